@@ -70,7 +70,8 @@ function watchFind() {
   $("names").innerHTML = [...found.keys()].map((name) => `<option value="${plain(name)}">`).join("");
   box.addEventListener("change", () => {
     const text = box.value.trim(), key = found.has(text) ? text : [...found.keys()].find((name) => name.toLowerCase().includes(text.toLowerCase()));
-    if (!text || !key) return;
+    if (!text) return;
+    if (!key) { $("panel").hidden = false; $("panel").replaceChildren(node("h2", { role: "status" }, say("nothing found")), node("p", { class: "hint" }, text)); return; }
     openTab("draw");
     ask(...found.get(key));
   });

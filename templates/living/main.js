@@ -9,16 +9,23 @@ function openSheet(number, quick = false) {
   fit(quick);
 }
 
-function openTab(name, sheet) {
-  const moves = name === "turn";
+// A tab: a sheet by its number, "turn", or the "lesson" of a plan from one of its stops on.
+function openTab(name, which, at) {
+  const moves = name === "turn", teaches = name === "lesson", sheet = teaches ? undefined : which;
   pause();
   spin(false);
-  $("paper").hidden = moves;
+  $("paper").hidden = moves || teaches;
   $("stage").hidden = !moves;
-  for (const button of $("tabs").children) button.setAttribute("aria-selected", String(moves ? button.dataset.tab === "turn" : Number(button.dataset.sheet) === (sheet ?? leaf.sheet.sheet)));
-  $("bar").replaceChildren(...(moves ? stageBar() : playerBar()));
-  if (moves) {
-    machine.watchers = [(name2) => { if (name2 && !$("stage").hidden) takeTurn(); drawStage(); }];
+  $("lesson").hidden = !teaches;
+  $("panel").hidden = teaches;
+  document.body.classList.toggle("teaching", teaches);
+  for (const button of $("tabs").children) button.setAttribute("aria-selected", String(name !== "draw" ? button.dataset.tab === name : Number(button.dataset.sheet) === (sheet ?? leaf.sheet.sheet)));
+  $("bar").replaceChildren(...(teaches ? lessonBar() : moves ? stageBar() : playerBar()));
+  if (teaches) {
+    machine.watchers = [lessonTurned];
+    openLesson(which, at);
+  } else if (moves) {
+    machine.watchers = [(name2) => { if (name2 && !$("stage").hidden) takeTurn(); drawStage(); writeAddress(); }];
     $("panel").replaceChildren(...changePanel());
     showEdits();
     openStage();
@@ -28,6 +35,7 @@ function openTab(name, sheet) {
     unask();
     showPlaying();
   }
+  writeAddress(true);
 }
 
 function onKey(event) {
@@ -36,7 +44,7 @@ function onKey(event) {
     return;
   }
   const moving = !$("stage").hidden, degree = Math.PI / 180;
-  const acts = moving
+  const acts = !$("lesson").hidden ? lessonKeys() : moving
     ? { " ": () => spin(!stage.playing), ArrowRight: () => turn(machine.phi + record.motion.sense * degree), ArrowLeft: () => turn(machine.phi - record.motion.sense * degree),
       Home: () => turn(record.motion.start) }
     : { " ": () => (film.playing ? pause() : play()), ArrowRight: () => stepTo(film.at + 1), ArrowLeft: () => stepTo(film.at - 1, true),
@@ -61,14 +69,17 @@ async function start() {
   const tab = (attributes, text, act) => node("button", { type: "button", role: "tab", ...attributes, onclick: act }, text);
   $("tabs").append(...record.sheets.map((s) => tab({ "data-sheet": s.sheet }, say("sheet {n}", { n: s.sheet }), () => openTab("draw", s.sheet))));
   if (record.motion && record.sheets.some((s) => s.live?.length)) $("tabs").append(tab({ "data-tab": "turn" }, say("in motion"), () => openTab("turn")));
+  if (record.lessons?.length) $("tabs").append(tab({ "data-tab": "lesson" }, say("lesson"), () => openTab("lesson", lesson.told?.plan ?? (record.lessons[1] ?? record.lessons[0]).plan, lesson.at)));
   makeTurner();
   watchViewport(clicked);
   setTimeout(watchFind);
   if (record.motion) machine.phi = phiOf(record.sheets.flatMap((s) => s.live ?? []).find((v) => v.plan === "positions"));
   const opens = record.opens && record.sheets.find((s) => s.plans.has(record.opens));
   leaf.sheet = opens || record.sheets[0];
-  openTab("draw", leaf.sheet.sheet);
-  if (opens) {
+  const told = location.hash.length > 1;
+  if (!told || !readAddress()) openTab("draw", leaf.sheet.sheet);
+  watchAddress();
+  if (opens && !told) {
     const view2 = opens.frames.find((f) => f.plan === record.opens).view;
     takeFilm(view2);
     $("what").value = view2;

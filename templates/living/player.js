@@ -1,6 +1,6 @@
 // The film of a sheet: step by step, as a hand draws it.
 
-const film = { stops: [], at: -1, view: "", playing: false, speed: 1, moving: 0, first: new Map() };
+const film = { stops: [], at: -1, view: "", playing: false, speed: 1, first: new Map() };
 
 // Stops of a sheet: for each frame, in the order of construction, the steps that leave a line.
 function stopsOf(sheet) {
@@ -86,7 +86,6 @@ function reveal(n) {
 
 // Draw one stop; resolves when the hand has done.
 function drawStop(n, quick = still()) {
-  cancelAnimationFrame(film.moving);
   const was = film.stops[film.at], stop = film.stops[n], hand = $("hand");
   film.at = n;
   $("scrub").value = n + 1;
@@ -104,39 +103,23 @@ function drawStop(n, quick = still()) {
       if (g.line || g.polyline || g.arc || g.circle) strokes.push({ d: pathOf(g, leaf.height) });
     }
   }
-  const paths = strokes.map(({ d, centre }) => {
-    const path = svgNode("path", { class: "hand", d, pathLength: 1, "stroke-dasharray": "1 1", "stroke-dashoffset": 1 });
+  // Each stroke is drawn in its turn; the radius of an arc stands from the compass's needle as long as that is drawn.
+  const each = quick ? 0 : Math.min(800, 2400 / strokes.length) / film.speed, marks = stop.marks.map((mark) => leaf.elements[mark]);
+  const drawn = strokes.map(({ d, centre }, i) => {
+    const path = svgNode("path", { class: "hand", d, pathLength: 1, "stroke-dasharray": "1 1" }), when = { duration: each, delay: i * each };
     hand.append(path);
-    const leg = centre && svgNode("line", { class: "leg", x1: centre[0], y1: centre[1], x2: centre[0], y2: centre[1] });
-    if (leg) hand.append(leg);
-    return { path, leg };
+    if (centre && each) {
+      const end = path.getPointAtLength(path.getTotalLength()), leg = svgNode("line", { class: "leg", x1: centre[0], y1: centre[1], x2: end.x, y2: end.y });
+      hand.append(leg);
+      leg.animate([{ opacity: 0.75 }, { opacity: 0.75 }], when);
+    }
+    return path.animate([{ strokeDashoffset: 1 }, { strokeDashoffset: 0 }], { ...when, fill: "backwards" }).finished;
   });
-  if (quick || !paths.length) {
-    for (const { path, leg } of paths) { path.setAttribute("stroke-dashoffset", 0); leg?.remove(); }
-    return new Promise((done) => setTimeout(done, 700 / film.speed));
-  }
-  const tip = svgNode("circle", { class: "tip", r: 1 });
-  hand.append(tip);
-  for (const mark of stop.marks) leaf.elements[mark].classList.add("later");
-  const each = Math.min(800, 2400 / paths.length) / film.speed, start = performance.now() + 120;
-  return new Promise((done) => {
-    const frame = (time) => {
-      const passed = Math.max(time - start, 0) / each, i = Math.min(Math.floor(passed), paths.length - 1), t = Math.min(passed - i, 1);
-      paths.forEach(({ path, leg }, k) => {
-        path.setAttribute("stroke-dashoffset", k < i ? 0 : k === i ? 1 - t : 1);
-        if (leg && k !== i) leg.setAttribute("visibility", "hidden");
-      });
-      const { path, leg } = paths[i], p = path.getPointAtLength(path.getTotalLength() * t);
-      tip.setAttribute("cx", p.x);
-      tip.setAttribute("cy", p.y);
-      if (leg) { leg.setAttribute("visibility", "visible"); leg.setAttribute("x2", p.x); leg.setAttribute("y2", p.y); }
-      if (passed < paths.length) { film.moving = requestAnimationFrame(frame); return; }
-      for (const mark of stop.marks) leaf.elements[mark].classList.remove("later");
-      tip.remove();
-      for (const one of paths) one.leg?.remove();
-      setTimeout(done, 500 / film.speed);
-    };
-    film.moving = requestAnimationFrame(frame);
+  if (each) for (const mark of marks) mark.classList.add("later");
+  const wait = new Promise((done) => setTimeout(done, (quick ? 700 : 500) / film.speed));
+  return Promise.allSettled(drawn).then(() => {
+    if (film.at === n) for (const mark of marks) mark.classList.remove("later");
+    return wait;
   });
 }
 

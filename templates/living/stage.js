@@ -52,7 +52,7 @@ function geometryOf(mark, placed) {
 
 const defined = (g) => pointsOf(g).every((z) => Number.isFinite(z[0]) && Number.isFinite(z[1]));
 
-function makeCard(live) {
+function makeCard(live, pick = ask) {
   const svg = svgNode("svg", { role: "img", "aria-label": live.view }), marks = live.marks.filter((m) => m.kind !== "path"), paths = live.marks.filter((m) => m.kind === "path");
   svg.innerHTML = '<g class="paths"></g><g class="marks"></g><g class="over"></g>';
   // What is said of the position that it is drawn for on the sheet does not hold in motion.
@@ -64,7 +64,7 @@ function makeCard(live) {
     const element = svgNode(mark.kind === "text" ? "text" : "path", { class: mark.kind === "fill" ? "mark fill" : "mark" });
     if (mark.kind === "text") { element.setAttribute("font-size", mark.height / CAPITAL); element.textContent = mark.string.replace(`(${live.position})`, ""); }
     else if (mark.kind !== "fill") { const s = record.styles[mark.style]; element.setAttribute("stroke-width", s.width); if (s.pattern.length) element.setAttribute("stroke-dasharray", s.pattern.join(" ")); }
-    element.addEventListener("click", () => { const id = live.sheet.marks.find((m) => m.id === mark.id)?.step; if (id) ask(id); });
+    element.addEventListener("click", () => { const id = live.sheet.marks.find((m) => m.id === mark.id)?.step; if (id) pick(id); });
     svg.querySelector(".marks").append(element);
     return element;
   });
@@ -73,7 +73,7 @@ function makeCard(live) {
 
 // A polygon of forces or a group keeps to the middle of its card; a plan with a pole keeps its pole.
 function centre(card, placed) {
-  const [x0, y0, x1, y1] = extentOf(card.ends.map(([mark, id]) => placed.point(mark, id))), w = WIDE + 30, h = HIGH + 24;
+  const [x0, y0, x1, y1] = extentOf(card.ends.map(([mark, id]) => placed.point(mark, id))), [w, h] = add(roomOf(card), [30, 24]);
   if (x0 <= x1) card.svg.setAttribute("viewBox", `${(x0 + x1 - w) / 2} ${-(y0 + y1 + h) / 2} ${w} ${h}`);
 }
 
@@ -87,7 +87,8 @@ function tellScale(card) {
 // Angles of the whole turn, world, rad.
 const round = (many) => Array.from({ length: many }, (_, i) => record.motion.start + record.motion.sense * record.motion.period * i / many);
 
-const WIDE = 120, HIGH = 66; // a card's room for what moves, mm
+// A card's room for what moves, mm: its own, or the same for all of the stage.
+const roomOf = (card) => card.room ?? [120, card === stage.cards[0] ? 145 : 66];
 
 // By how much a view is to be smaller than on the sheet to have room in its card.
 function shrinking(card, all) {
@@ -95,11 +96,12 @@ function shrinking(card, all) {
     const placed = placer(values);
     return card.ends.map(([mark, id]) => placed.point(mark, id));
   }));
-  return x0 <= x1 ? Math.max((x1 - x0) / WIDE, (y1 - y0) / (card === stage.cards[0] ? 2.2 * HIGH : HIGH)) : 0;
+  const [w, h] = roomOf(card);
+  return x0 <= x1 ? Math.max((x1 - x0) / w, (y1 - y0) / h) : 0;
 }
 
 // A polygon or a group of links keeps to the middle of its card, a plan with a pole keeps its pole.
-const isCentred = (card) => card.live.plan !== "positions" && planOf(card.live.plan).pole === undefined;
+const isCentred = (card) => card.room || card.live.plan !== "positions" && planOf(card.live.plan).pole === undefined;
 
 // What all views are in the course of a turn; taken anew when a given number is another, for the cards that are seen.
 function takeTurn() {
@@ -110,14 +112,14 @@ function takeTurn() {
 }
 
 // Letters of a plan that would lie on others for much of the turn are left out, each with all of its signs.
-function chooseLetters(card) {
+function chooseLetters(card, turn) {
   const letterings = new Map();
   card.marks.forEach((mark, n) => {
     if (mark.role !== "text" || !mark.at) return;
     if (!letterings.has(mark.lettering)) letterings.set(mark.lettering, []);
     letterings.get(mark.lettering).push(n);
   });
-  const many = Math.min(stage.turn.length, MOMENTS), moments = Array.from({ length: many }, (_, i) => placer(stage.turn[Math.floor(i * stage.turn.length / many)], card.shrunk));
+  const many = Math.min(turn.length, MOMENTS), moments = Array.from({ length: many }, (_, i) => placer(turn[Math.floor(i * turn.length / many)], card.shrunk));
   const all = [...letterings.values()].map((signs) => ({ signs, boxes: moments.map((placed) => extentOf(signs.flatMap((n) => {
     const mark = card.marks[n], g = geometryOf(mark, placed);
     if (g.text) { const [x, y] = g.text.at; return [[x, y], [x + 0.55 * mark.height * mark.string.length, y + mark.height]]; }
@@ -135,12 +137,13 @@ function chooseLetters(card) {
 const MOMENTS = 24, CROWDED = 0.2;
 
 // The scale of a card, the same for the whole turn; the room of everything that moves in it, paths of points.
-function frameCard(card) {
+function frameCard(card, turn = stage.turn) {
   card.framed = true;
   card.centred = isCentred(card);
-  card.shrunk = (card.centred ? Math.max(...stage.turn.map((one) => shrinking(card, [one]))) : shrinking(card, stage.turn)) || 1;
-  chooseLetters(card);
-  const moving = card.marks.filter((mark) => mark.role !== "construction" && mark.role !== "text"), placers = (card.centred ? [] : stage.turn).map((values) => placer(values, card.shrunk));
+  card.shrunk = (card.centred ? Math.max(...turn.map((one) => shrinking(card, [one]))) : shrinking(card, turn)) || 1;
+  chooseLetters(card, turn);
+  if (card.room) return;
+  const moving = card.marks.filter((mark) => mark.role !== "construction" && mark.role !== "text"), placers = (card.centred ? [] : turn).map((values) => placer(values, card.shrunk));
   const [x0, y0, x1, y1] = boundsOf(placers.flatMap((placed) => moving.map((mark) => ({ geometry: geometryOf(mark, placed) }))).filter(({ geometry }) => defined(geometry)));
   if (x0 < x1) card.svg.setAttribute("viewBox", `${x0 - 11} ${-y1 - 9} ${x1 - x0 + 22} ${y1 - y0 + 18}`);
   card.svg.querySelector(".paths").innerHTML = card.paths.map((path) => {
@@ -154,7 +157,7 @@ function frameCard(card) {
 function drawCard(card, values) {
   if (!card.framed) frameCard(card);
   const placed = placer(values, card.shrunk);
-  tellScale(card);
+  if (!card.room) tellScale(card);
   if (card.centred) centre(card, placed);
   card.marks.forEach((mark, n) => {
     if (card.left.has(n)) return;

@@ -158,6 +158,12 @@ def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "m
     return wording.format(*shown, name=letter_of(step), value=value, formula=formula)
 
 
+def sentence_of_any_angle(step: Step) -> str:
+    """A step as a sentence without numbers: "{value}" where its own stands; empty where it is told by a formula alone."""
+    shown = [letter_of(arg) if isinstance(arg, Step) else "" for arg in step.args]
+    return _wording(step, shown).format(*shown, name=letter_of(step), value="{value}", formula="")
+
+
 _SECTIONS = {"rack": "gear",
              **dict.fromkeys(("drive", "rotor", "motor", "crank", "energy", "reduction"), "flywheel")}
 """Parts of the note whose letters those of other plans are, by the first word of a plan's name."""

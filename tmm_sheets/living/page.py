@@ -20,6 +20,7 @@ from tmm_sheets import results, spelling, words
 from tmm_sheets.drawing.styles import line_types
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.living.anchors import hung, markers
+from tmm_sheets.living.lesson import lesson_words, lessons
 from tmm_sheets.living.motion import MotionProgram, motion
 from tmm_sheets.note.reader import unit_words
 from tmm_sheets.record import recording
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from tmm_sheets.task.variant import Variant
 
 MODULES = ("digits", "primitives", "strokes", "courses", "searches", "formula", "data", "flywheel", "machine", "sheet", "viewport",
-           "steps", "ask", "markers", "player", "stage", "drag", "change", "main")
+           "steps", "ask", "markers", "player", "stage", "drag", "change", "lesson", "address", "main")
 """Modules of the page in templates/living, in the order in which they stand in it."""
 
 
@@ -58,8 +59,11 @@ def page(project: Project, numbers: Iterable[int] = (), plan: str = "") -> tuple
     if made is not None:
         lines = scan(project.variant.text).lines
         record["motion"] = made.told() | {"givens": [g | slider(project.variant, lines, g["name"]) for g in made.givens]}
+        computed = made.programs["all"].source.results
         for sheet in record["sheets"]:
-            sheet["live"] = hung(record, sheet, made.programs["all"].source.results)
+            sheet["live"] = hung(record, sheet, computed)
+        drawn_live = {view["plan"] for sheet in record["sheets"] for view in sheet["live"]}
+        record["lessons"] = [one for one in lessons(project, recording.book_of(project), computed) if one["plan"] in drawn_live]
     for sheet in record["sheets"]:
         sheet["markers"] = markers(project, record, sheet)
     _check_plan(record, plan)
@@ -68,7 +72,7 @@ def page(project: Project, numbers: Iterable[int] = (), plan: str = "") -> tuple
     views = {view: name for view in drawn if (name := called(view))}  # of those without a title
     record |= {
         "styles": {name: {"width": s.width, "pattern": [abs(x) for x in s.pattern]} for name, s in line_types().items()},
-        "opens": plan, "words": page_words() | {"units": _units(record), "views": views}, "file": variant.text,
+        "opens": plan, "words": page_words() | lesson_words() | {"units": _units(record), "views": views}, "file": variant.text,
         "filename": re.sub(r"[^\w.+-]+", "-", variant.stem).strip("-") + ".toml",
     }  # fmt: skip
     return _written(record, made), problem

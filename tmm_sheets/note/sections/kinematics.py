@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +18,9 @@ from tmm_sheets.note.document import Rows, ShownFormula, Symbol, Text, enumerate
 from tmm_sheets.note.reader import Column, NoteQuantity, Reader, listed, named
 from tmm_sheets.numbers import is_zero, number
 from tmm_sheets.sheets.linkage.synthesis import triads
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
 
 BAR = "\u0305"
 MOST_COLUMNS = 9
@@ -114,40 +118,72 @@ def _drawn_lengths(r: Reader) -> Rows:
     return (head, *(((lettered(g.symbol),), (r.number(g.value, "", g.step),), (r.fixed(mm, "", 1, g.step),)) for g, mm in drawn))
 
 
-def _equations(r: Reader, plan: Plan) -> Iterator[dict[str, Any]]:
-    """Vector equations of the crossings of a plan; each with what is known of the directions."""
+@dataclass(frozen=True)
+class Side:
+    """One side of a vector equation: the vectors that lead to ``start``, and the ``rest`` along a direction, of unknown length."""
+
+    start: Step
+    along: Any
+    path: list[str]
+    rest: list[str]
+
+
+@dataclass(frozen=True)
+class VectorEquation:
+    """Two sums of vectors of a plan that end in one point, which is found where the lines of their unknown lengths cross."""
+
+    step: Step
+    head: str
+    sides: list[Side]
+
+    def sums(self, pole: str) -> list[Side]:
+        """The sides that are sums: not that of a point held by the pole, whose direction is that of the head itself."""
+        return [side for side in self.sides if side.start.name != pole and side.rest]
+
+
+def vector_equations(project: Project, plan: Plan) -> Iterator[VectorEquation]:
+    """Vector equations of the crossings of a plan of velocities or accelerations."""
     by_ends = {(s.tail.name, s.head.name): s.symbol for s in plan.segments}
     pole = str(plan.pole)
     for step in plan:
         head = by_ends.get((pole, step.name)) if step.rule is LINE_LINE else None
         if head is None:
             continue
-        sides: list[Node] = []
-        known: list[Text] = []
+        sides = []
         first, u, second, w = step.args[:4]
         for start, along in ((first, u), (second, w)):
             path = _path(plan, pole, start.name) if isinstance(start, Step) else None
-            if path is None:
-                continue
-            last = by_ends.get((start.name, step.name))
-            rest = [last] if last is not None else _of_special(r, plan, step, start, path)
-            direction = direction_of(r, along)
+            if path is not None:
+                last = by_ends.get((start.name, step.name))
+                rest = [last] if last is not None else _of_special(project, plan, step, start, path)
+                sides.append(Side(start, along, path, rest))
+        yield VectorEquation(step, head, sides)
+
+
+def _equations(r: Reader, plan: Plan) -> Iterator[dict[str, Any]]:
+    """Vector equations of the crossings of a plan; each with what is known of the directions."""
+    pole = str(plan.pole)
+    for found in vector_equations(r.project, plan):
+        known: list[Text] = []
+        for side in found.sides:
+            direction = direction_of(r, side.along)
             if direction is not None:
-                known += [(Symbol(row(letters(own), direction)),) for own in (rest if start.name != pole else [head])]
-            if start.name != pole and rest:
-                sides.append(joined("+", [Underlined(letters(x), 2) for x in path] + [Underlined(letters(x), 1) for x in rest]))
-        if sides:
-            equation = row(letters(head), *(node for side in sides for node in (Sign("="), side)))
+                lines = side.rest if side.start.name != pole else [found.head]
+                known += [(Symbol(row(letters(own), direction)),) for own in lines]
+        sums = [joined("+", [Underlined(letters(x), 2) for x in side.path] + [Underlined(letters(x), 1) for x in side.rest])
+                for side in found.sums(pole)]
+        if sums:
+            equation = row(letters(found.head), *(node for one in sums for node in (Sign("="), one)))
             yield {"equation": ShownFormula(equation), "known": enumerated(known)}
 
 
-def _of_special(r: Reader, plan: Plan, step: Step, start: Step, path: Sequence[str]) -> list[str]:
+def _of_special(project: Project, plan: Plan, step: Step, start: Step, path: Sequence[str]) -> list[str]:
     """Vectors of one direction that lead to a point of a group of class III and are drawn as one.
 
     Of a velocity those of a leg and of the triangle towards its special point, of an acceleration the tangential ones beside the
     normal ones of the ``path`` and the relative ones beside Coriolis'.
     """
-    study = r.project.study
+    study = project.study
     if plan is study.accelerations.plan:
         turned = study.accelerations.of_coriolis
         rest = {symbol: "r" if symbol in turned else "τ" for symbol in path if symbol in turned or symbol.endswith("^n")}
@@ -156,7 +192,7 @@ def _of_special(r: Reader, plan: Plan, step: Step, start: Step, path: Sequence[s
     for s in study.positions.special.values():
         if v.special.get(s.name) is not step:
             continue
-        tri = next(g.links[0] for g in triads(r.project) if g.kind.about(g) == s.name)
+        tri = next(g.links[0] for g in triads(project) if g.kind.about(g) == s.name)
         for leg in s.pair:
             carrier = m.guides[leg.guide].link if leg.guide else ""
             if (v.coincident.get(on_link(leg.corner, carrier)) if leg.guide else v.points[leg.outer]) is start:

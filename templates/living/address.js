@@ -1,0 +1,64 @@
+// The state of the page in its address: #plan=accelerations&step=5&phi=126&crank.length=0.082, also of a page from a file.
+
+const address = { written: "" };
+
+function addressNow() {
+  const found = new URLSearchParams(), moving = !$("stage").hidden;
+  if (!$("lesson").hidden) {
+    found.set("plan", lesson.told.plan);
+    found.set("step", lesson.at + 1);
+    if (lesson.mode !== "show") found.set("mode", lesson.mode);
+  } else if (moving) found.set("tab", "motion"); else found.set("sheet", leaf.sheet.sheet);
+  if (record.motion && (moving || !$("lesson").hidden)) {
+    found.set("phi", Number(mod(machine.phi * 180 / Math.PI, 360).toFixed(2)));
+    for (const g of changed()) found.set(g.name, String(machine.given[g.name]));
+  }
+  return `#${found}`;
+}
+
+// A new place in the history for another view, the same one for another angle or step.
+function writeAddress(anew = false) {
+  clearTimeout(address.waits);
+  const write = () => {
+    const text = addressNow();
+    if (text === location.hash) return;
+    address.written = text;
+    if (anew) location.hash = text; else history.replaceState(null, "", text);
+  };
+  if (anew) write(); else address.waits = setTimeout(write, 150);
+}
+
+function readAddress() {
+  const found = new URLSearchParams(location.hash.slice(1));
+  if (![...found.keys()].length) return false;
+  if (record.motion) {
+    const given = { ...machine.made };
+    for (const g of record.motion.givens) if (found.has(g.name)) {
+      const numbers = found.get(g.name).split(",").map(Number);
+      if (numbers.every(Number.isFinite) && numbers.length === [g.value].flat().length) given[g.name] = Array.isArray(g.value) ? numbers : numbers[0];
+    }
+    machine.given = given;
+    const phi = Number(found.get("phi"));
+    if (found.has("phi") && Number.isFinite(phi)) machine.phi = phi * Math.PI / 180;
+  }
+  const plan = found.get("plan"), sheet = Number(found.get("sheet"));
+  if (record.lessons?.some((one) => one.plan === plan)) {
+    openTab("lesson", plan, (Number(found.get("step")) || 0) - 1);
+    if (found.get("mode") === "lecture" && lesson.mode !== "lecture") lessonMode("lecture");
+  } else if (found.get("tab") === "motion" && record.motion) openTab("turn");
+  else openTab("draw", sheet || undefined);
+  return true;
+}
+
+function watchAddress() {
+  addEventListener("hashchange", () => { if (location.hash !== address.written) readAddress(); });
+}
+
+async function copyLink() {
+  writeAddress();
+  history.replaceState(null, "", addressNow());
+  const said = node("div", { id: "toast", role: "status" });
+  try { await navigator.clipboard.writeText(location.href); said.textContent = say("copied"); } catch { said.textContent = location.href; }
+  document.body.append(said);
+  setTimeout(() => said.remove(), 2600);
+}

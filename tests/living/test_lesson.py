@@ -1,0 +1,71 @@
+"""The lesson: order of its stops, its equations as the note has them, its numbers those of the record, its state in the address."""
+
+import pytest
+
+from tests.few import seldom
+from tests.living import javascript
+from tests.living.test_page import made, record_of
+from tests.page.chromium import browser
+
+NAMES = ("lugansk/shaper", *(seldom(name) for name in ("sixbar/5:2", "loom", "press")))
+
+
+def lesson_of(record, plan):
+    return next(one for one in record["lessons"] if one["plan"] == plan)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_nothing_is_told_before_what_it_is_made_of(name):
+    """Each stop begins where another one, or the pole, has been; a line comes before the point where it crosses another."""
+    record = record_of(made(name))
+    assert {"velocities", "accelerations"} <= {one["plan"] for one in record["lessons"]}
+    for lesson in record["lessons"]:
+        drawn = {lesson["pole"]} if lesson["pole"] else {f"{lesson['plan']}/{n}" for n in "12"}
+        lines = []
+        for stop in lesson["stops"]:
+            if stop["kind"] == "meet":
+                assert lines.count(stop["step"]) == 2
+            elif stop["kind"] == "line":
+                lines.append(stop["step"])
+            if stop["kind"] in ("lay", "line", "similar", "rate"):
+                assert stop["tail"] in drawn, (lesson["plan"], stop)
+            drawn.add(stop["step"])
+
+
+def test_order_of_the_acceleration_plan():
+    """As a teacher draws it: a line right behind the vector that it begins at, the rate of turning right behind its vector."""
+    stops = lesson_of(record_of(made("lugansk/shaper")), "accelerations")["stops"]
+    told = [(stop["kind"], stop["step"].partition("/")[2], stop.get("tail", "").partition("/")[2]) for stop in stops]
+    assert told[:7] == [("lay", "b", "π"), ("lay", "k", "b"), ("line", "b3", "k"), ("lay", "n", "π"), ("line", "b3", "n"),
+                        ("meet", "b3", ""), ("rate", "ε3", "π")]
+
+
+def test_equation_of_the_acceleration_plan():
+    """Known vectors are underlined twice, those of unknown length once."""
+    first, second = lesson_of(record_of(made("lugansk/shaper")), "accelerations")["equations"]
+    assert [[(term["symbol"].replace("\u0305", ""), term["times"]) for term in side] for side in first["sides"]] == [
+        [("a_B", 2), ("a_{B3B}^к", 2), ("a_{B3B}^r", 1)], [("a_{B3C}^n", 2), ("a_{B3C}^τ", 1)]]
+    assert second["head"].replace("\u0305", "") == "a_{D5}"
+
+
+@javascript.browser
+def test_the_address_tells_the_moment(tmp_path):
+    """Plan, step, angle and a length from the address; what stands at the vector is what the record has, and in its millimetres."""
+    path = tmp_path / "page.html"
+    path.write_text(made("lugansk/shaper"), encoding="utf-8")
+    record = record_of(made("lugansk/shaper"))
+    with browser(tmp_path / "profile") as page:
+        page.open(f"{path.as_uri()}#plan=accelerations&step=2&phi=125.97")
+        page.until("!!document.querySelector('html[data-ready]')")
+        page.now("goStop(1, true)")
+        said = page.now("$('tag').textContent + ' ' + $('told').textContent")
+        k, b = (complex(*record["steps"][f"accelerations/{name}"]["value"][2]) for name in "kb")
+        assert f"{abs(k - b) / 0.02:.1f} мм".replace(".", ",") in said
+        terms = page.now("[...document.querySelectorAll('#equation button')].map(one => one.querySelectorAll('u.on').length)")
+        assert terms == [2, 2, 0, 0, 0]
+        page.now("goStop(4, true); turn(1)")
+        page.until("location.hash.includes('step=5') && location.hash.includes('phi=57.3')")
+        page.now("location.hash = '#plan=velocities&step=3&phi=100&crank.length=0.082'")
+        page.until("lesson.told.plan === 'velocities'")
+        assert page.now("[lesson.at, machine.given['crank.length'], Math.round(machine.phi * 180 / Math.PI)]") == [2, 0.082, 100]
+        assert page.said == []

@@ -1,0 +1,186 @@
+"""The lesson of a polygon: its vector equations, and what is drawn one thing after another, each with its question and its size.
+
+A lesson is told without numbers. The page puts in those of the crank angle and of the given lengths: values of steps, and products
+of them. Vectors of which all is known come first, each line of an unknown length right behind the vector it begins at, then the
+point where the lines cross, the rate of turning that follows from it, points by similarity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from tmm_sheets.construction import protocol, rules
+from tmm_sheets.construction.step import Plan, Step
+from tmm_sheets.mechanism.groups.contexts import CLOSE
+from tmm_sheets.methods.linkage import accelerations as acc
+from tmm_sheets.methods.linkage import velocities as vel
+from tmm_sheets.note.sections.kinematics import vector_equations
+from tmm_sheets.words import tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+    from tmm_sheets.record.step_index import StepIndex
+
+SIZES = {
+    vel.CRANK_VELOCITY: ("V", 1, 2, (0, 1)),
+    vel.RIGID: ("V", 1, 1, (2, 3)),
+    acc.NORMAL: ("a^n", 2, 1, (2, 3)),
+    acc.TANGENTIAL: ("a^τ", 1, 1, (2, 3)),
+    acc.CORIOLIS: ("a^k", 1, 1, (2, 3)),
+}
+"""Vectors of known size: letter, power of the rate of turning, which argument that is, and the two ends of what it is times."""
+TURNED = (vel.CRANK_VELOCITY, vel.RIGID, acc.TANGENTIAL, acc.CORIOLIS)
+"""Vectors across what they are times."""
+RATES = (vel.ANGULAR_VELOCITY, acc.ANGULAR_ACCELERATION)
+
+
+def lessons(project: Project, index: StepIndex, known: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Lessons of the plans of velocities, accelerations and forces whose steps the page computes; ``known`` are the ids of these.
+
+    Each has ``plan``, ``equations`` (``end``, a step, ``head``, a symbol, and ``sides`` of terms: ``symbol``, ``tail``, ``head``,
+    ``times`` it is underlined) and ``stops``, see :class:`_Lesson`.
+    """
+    study = project.study
+    found = [_Lesson(index, of.plan, _of_motion(project, of.plan)) for of in (study.velocities, study.accelerations)]
+    if "forces" in vars(study):
+        found += [_Lesson(index, one.plan, [(None, "0", [one.sides])]) for one in study.forces.plans.values()]
+    made = [lesson.told() for lesson in found]
+    return [one for one in made if one["stops"] and all(stop["step"] in known for stop in one["stops"])]
+
+
+Sides = list[list[tuple[str, Step, Step, bool]]]
+"""Sums of vectors: symbol, ends, whether its length is sought."""
+
+
+def _of_motion(project: Project, plan: Plan) -> list[tuple[Step | None, str, Sides]]:
+    """Vector equations of a plan as the note has them, with the ends of each vector."""
+    ends = {s.symbol: (s.tail, s.head) for s in plan.segments}
+    found: list[tuple[Step | None, str, Sides]] = []
+    for one in vector_equations(project, plan):
+        sides = [[(symbol, *ends.get(symbol, (side.start, one.step)), symbol in side.rest) for symbol in (*side.path, *side.rest)]
+                 for side in one.sums(str(plan.pole))]
+        if sides:
+            found.append((one.step, one.head, sides))
+    return found
+
+
+class _Lesson:
+    """One plan.
+
+    A stop has the ``step`` it draws, its ``kind``, ``tail`` and ``head`` of what is drawn, ``across`` if that is turned by a
+    quarter against ``along``, the two points or the direction it is taken from, ``say``, a sentence, and what its size is made of.
+    """
+
+    def __init__(self, index: StepIndex, plan: Plan, equations: list[tuple[Step | None, str, Sides]]) -> None:
+        self.index, self.plan, self.equations = index, plan, equations
+
+    def told(self) -> dict[str, Any]:
+        """The lesson as it stands in the page."""
+        stops: list[dict[str, Any]] = []
+        for step in self.plan:
+            if step.rule is rules.LINE_LINE:
+                for start, along in ((step.args[0], step.args[1]), (step.args[2], step.args[3])):
+                    line = self._line(step, start, along)
+                    stops.insert(self._behind(stops, start), line)
+            if (one := self._stop(step)) is not None:
+                stops.append(one)
+        pole = self.plan.pole
+        return {"plan": self.plan.name, "pole": "" if pole is None else self.index.id(self.plan[pole]), "stops": stops,
+                "equations": [{"end": self.index.id(end) if end is not None else "", "head": head, "sides": [
+                    [{"symbol": symbol, "tail": self.index.id(tail), "head": self.index.id(to), "times": 1 if sought else 2}
+                     for symbol, tail, to, sought in side] for side in sides]} for end, head, sides in self.equations]}
+
+    def _behind(self, stops: list[dict[str, Any]], start: Step) -> int:
+        """Where a line is told: behind its beginning, if only vectors of the same equation were laid off since; else now."""
+        place = len(stops)
+        for n in range(len(stops) - 1, -1, -1):
+            if stops[n]["step"] == self.index.id(start) and stops[n]["kind"] == "lay":
+                place = n + 1
+                break
+            if stops[n]["kind"] != "lay":
+                break
+        return place
+
+    def _line(self, step: Step, start: Step, along: Step) -> dict[str, Any]:
+        points = [a for a in (along.args[0].args if along.rule is rules.TURN else along.args) if isinstance(a, Step)]
+        across = along.rule is rules.TURN
+        name = protocol.letter_of(along).replace("⟂", "")
+        told = tr("Through {point} perpendicular to {line} draw a line: its length is not known yet.") if across else tr(
+            "Through {point} parallel to {line} draw a line: its length is not known yet.")
+        ray = len(points) == 2 and all(a.rule.gives == "point" for a in points)
+        return {"step": self.index.id(step), "kind": "line", "tail": self.index.id(start), "direction": self.index.id(along),
+                "across": across, "along": [self.index.id(a) for a in points] if ray else [], "name": name,
+                "say": told.format(point=protocol.letter_of(start), line=name)}
+
+    def _stop(self, step: Step) -> dict[str, Any] | None:
+        """A stop of a step that draws something or gives a rate of turning; none of others."""
+        args = [self.index.id(a) if isinstance(a, Step) else "" for a in step.args]
+        stop: dict[str, Any] = {"step": self.index.id(step), "say": protocol.sentence_of_any_angle(step)}
+        rule = step.rule
+        if rule in SIZES:
+            letter, power, rate, (a, b) = SIZES[rule]
+            tail = args[0] if rule is not vel.CRANK_VELOCITY else self.index.id(self.plan[str(self.plan.pole)])
+            times = f"{protocol.letter_of(step.args[a])}{protocol.letter_of(step.args[b])}"
+            return stop | {"kind": "lay", "rule": rule.name, "tail": tail, "across": rule in TURNED, "along": [args[a], args[b]],
+                           "letter": letter, "rate": args[rate], "power": power, "twice": rule is acc.CORIOLIS,
+                           "name": times, "centre": protocol.letter_of(step.args[a])}
+        if rule is rules.SHIFT:
+            return stop | {"kind": "lay", "rule": "force", "tail": args[0], "across": False, "along": [], "force": args[1]}
+        if rule is rules.LINE_LINE:
+            return stop | {"kind": "meet", "of": [self.index.id(s.tail) for s in self.plan.segments if s.head is step]}
+        if rule is vel.SIMILAR:
+            names = [protocol.letter_of(a) for a in step.args]
+            return stop | {"kind": "similar", "tail": args[0], "to": args[1], "places": args[2:], "names": names}
+        if rule in RATES and all(args):
+            return stop | {"kind": "rate", "along": args[:2], "tail": args[2], "head": args[3],
+                           "name": f"{protocol.letter_of(step.args[0])}{protocol.letter_of(step.args[1])}",
+                           "centre": protocol.letter_of(step.args[0])}
+        if rule is CLOSE:
+            return stop | {"kind": "close", "tail": args[0], "head": args[1]}
+        return stop | {"kind": "draw"} if rule.helpers is not None and rule.gives in ("point", "vector", "force") else None
+
+
+def titles() -> Iterator[tuple[str, str]]:
+    """Titles of stops by kind or rule, each with its key."""
+    yield "normal acceleration", tr("Normal acceleration")
+    yield "tangential acceleration", tr("Tangential acceleration")
+    yield "Coriolis acceleration", tr("Coriolis acceleration")
+    yield "velocity of the crank pin", tr("Velocity of the crank pin")
+    yield "velocity on a turning link", tr("Velocity of rotation")
+    yield "force", tr("Force")
+    yield "line", tr("Direction without length")
+    yield "meet", tr("The lines cross")
+    yield "similar", tr("Similarity")
+    yield "rate", tr("How the link turns")
+    yield "close", tr("The polygon closes")
+    yield "draw", tr("Construction")
+
+
+def lesson_words() -> dict[str, str]:
+    """Texts of the lesson by their keys."""
+    return {f"title: {key}": said for key, said in titles()} | {
+        "lesson": tr("Lesson"),
+        "mechanism": tr("Mechanism"),
+        "which plan": tr("Which plan"),
+        "step {n} of {all}": tr("Step {n} / {all}"),
+        "begin": tr("What is known stands in the equation twice underlined, what has a direction only once. Press › and draw it."),
+        "segment": tr("|{name}| = {mm} mm"),
+        "the same point": tr("Point {name} falls on {other}: nothing to draw."),
+        "lecture": tr("Lecture"),
+        "copy link": tr("Copy link"),
+        "copied": tr("The link is copied"),
+        "why: normal acceleration": tr("A point that goes round a centre is drawn to it, the more the faster: ω²·l."),
+        "why: tangential acceleration": tr("The link turns faster and faster: its point gains ε·l across the link."),
+        "why: Coriolis acceleration": tr("The block slides on a link that turns: half comes from the turning of its velocity, "
+                                         "half from the growing radius."),
+        "why: velocity of the crank pin": tr("A point of a turning link moves across the line to the centre, by ω·l."),
+        "why: velocity on a turning link": tr("A point of a turning link moves across the line to the centre, by ω·l."),
+        "why: line": tr("The direction is known from the pair or the link, the length is not: a line, underlined once."),
+        "why: meet": tr("Two directions give two lengths: both are measured on the plan."),
+        "why: similar": tr("The figure of a link and that of its vectors are similar and lettered the same way round."),
+        "why: rate": tr("The vector put to its point on the mechanism shows the sense of turning."),
+        "why: close": tr("A link in balance has a closed polygon of forces."),
+        "nothing found": tr("Nothing found"),
+        "with other numbers": tr("with other numbers than the project's"),
+    }
