@@ -21,7 +21,7 @@ from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, PlanPoint, Studen
 from tmm_sheets.compare.elements import Element, ElementView, KnownSheet, dashed, known_sheet, sampled, sheet_numbers
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.findings import Report, millimetres, verdict
-from tmm_sheets.compare.photo import lost_ink, overlay, photograph, placed_views, rectification, small_marks, tracing
+from tmm_sheets.compare.photo import lost_ink, need_opencv, overlay, photograph, placed_views, rectification, small_marks, tracing
 from tmm_sheets.compare.photo.fit_check import MATCH, SIDE, SIDES
 from tmm_sheets.compare.photo.judging import PhotoFinding, judge, tolerance_of
 from tmm_sheets.compare.photo.lost_ink import Mask, lost_to_threshold, mask_washed_out
@@ -282,6 +282,7 @@ def sheet_of(project: Project, path: Path, say: Callable[[str], None] = lambda _
 
 
 def _read(path: Path) -> Photograph:
+    need_opencv()
     return apart.carried_out(photograph.read, path, tell(SMALLER), memory=MEMORY)
 
 
