@@ -70,7 +70,7 @@ def _heading(name: str) -> dict[str, Any]:
     folder = families.folder_of(name)
     if folder is not None:
         return families.heading(folder, name)
-    return families.table_of_heading(_path(name).read_text(encoding="utf-8"))
+    return families.table_of_heading(_path(name))
 
 
 def read(project: str, corrected: bool = False) -> Variant:

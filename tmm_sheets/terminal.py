@@ -75,7 +75,8 @@ def settle() -> None:
             shown = Shown(stream.detach(), encoding if at_hand else "utf-8", "replace" if at_hand else elsewhere,
                           line_buffering=by_line)
             shown.patient = name == "stderr"
-            setattr(sys, name, shown)
+            for at in (name, f"__{name}__"):  # the one that was is of no use to anybody
+                setattr(sys, at, shown)
 
 
 def drop(stream: object) -> None:

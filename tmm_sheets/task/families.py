@@ -69,22 +69,42 @@ def listed(folder: Path) -> Iterator[str]:
 
 def heading(folder: Path, project: str) -> dict[str, Any]:
     """Table ``[project]`` of one of these names; a KeyError where it needs what tables have."""
-    from tmm_sheets import toml_file
-
     rules = _rules(folder)
     called, _, cipher = project.partition("/")[2].partition(rules.get("separator", "@"))
     machine = rules["machine"][called]
     about = {"name": project, "machine": called, "cipher": cipher, "title": machine.get("title") or called}
-    return table_of_heading(toml_file.text_of(files.named(machine["scheme"][0], folder, folder))[0], about)
+    return table_of_heading(files.named(machine["scheme"][0], folder, folder), about)
 
 
-def table_of_heading(text: str, fields: Mapping[str, str] | None = None) -> dict[str, Any]:
+def table_of_heading(path: Path, fields: Mapping[str, str] | None = None) -> dict[str, Any]:
     """Table ``[project]`` of a project file, or of a scheme with the ``fields`` that are filled in there; no other is read."""
+    text = _text(path)
     rest = re.split(r"^\[project\]$", text, maxsplit=1, flags=re.MULTILINE)[1]
     heading = re.split(r"^\[", rest, maxsplit=1, flags=re.MULTILINE)[0]
-    from tmm_sheets import toml_file  # not for --help, which looks for no family
+    return _tables(Template(heading).substitute(fields) if fields else heading, path)
 
-    return toml_file.parsed(Template(heading).substitute(fields) if fields else heading, "")[0]
+
+def _text(path: Path) -> str:
+    if _is_ours(path):
+        return path.read_text(encoding="utf-8")
+    from tmm_sheets import toml_file
+
+    return toml_file.text_of(path)[0]
+
+
+def _tables(text: str, path: Path) -> dict[str, Any]:
+    """Tables of the text of a file; of what others wrote within limits."""
+    if _is_ours(path):
+        import tomllib  # not for --help, which looks for no family
+
+        return tomllib.loads(text)
+    from tmm_sheets import toml_file
+
+    return toml_file.parsed(text, str(path))[0]
+
+
+def _is_ours(path: Path) -> bool:
+    return path.is_relative_to(resources.variants())
 
 
 def user_folder() -> Path | None:
@@ -126,9 +146,7 @@ def _rules(folder: Path) -> dict[str, Any]:
 @lru_cache(maxsize=64)
 def _parsed(path: Path, changed: int) -> dict[str, Any]:
     """A family's rules, read once however many of its projects are listed."""
-    from tmm_sheets import toml_file
-
-    return toml_file.read(path)[1]
+    return _tables(_text(path), path)
 
 
 def _folder(name: str) -> Path | None:
