@@ -431,6 +431,39 @@ def test_a_connection_that_asks_for_nothing_is_closed(monkeypatch):
     assert asyncio.run(all_of_them()) == [b"", b"", b"HTTP/1.1 204"]
 
 
+def test_half_requests_of_one_address_leave_room_for_whole_ones():
+    """However many come at once, all but some are closed, and what is asked in full is answered."""
+    uvicorn = pytest.importorskip("uvicorn")
+
+    async def app(scope, receive, send):
+        await send({"type": "http.response.start", "status": 204, "headers": []})
+        await send({"type": "http.response.body"})
+
+    async def all_of_them():
+        listening = serving._listening("127.0.0.1", None)
+        config = uvicorn.Config(app, lifespan="off", log_level="critical", http=serving.patient(), limit_concurrency=200)
+        server = uvicorn.Server(config)
+        running = asyncio.create_task(server.serve([listening]))
+        while not server.started:
+            await asyncio.sleep(0.01)
+        ends = [socket.create_connection(listening.getsockname()) for _ in range(250)]  # the server has no turn in between
+        for end in ends:
+            end.send(b"GET / HTTP/1.1\r\n")
+        read, whole = await asyncio.open_connection(*listening.getsockname())
+        whole.write(b"GET / HTTP/1.1\r\nHost: a\r\n\r\n")
+        told = await asyncio.wait_for(read.read(12), 5)
+        there = len(server.server_state.connections)
+        for end in (*ends, whole):
+            end.close()
+        server.should_exit = True
+        await running
+        return told, there
+
+    told, there = asyncio.run(all_of_them())
+    assert told == b"HTTP/1.1 204"
+    assert there <= serving.MOST_IDLE + 1
+
+
 def test_who_listens_slowly_keeps_nobody_waiting():
     """The place of a piece of work is free when its answer is there, not when it has been taken."""
     async def both():

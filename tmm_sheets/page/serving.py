@@ -81,10 +81,12 @@ def patient() -> type[asyncio.Protocol]:
         def connection_made(self, transport: Any) -> None:
             """Begin to look."""
             super().connection_made(transport)
-            address = str((transport.get_extra_info("peername") or ("",))[0])
-            self.alike = idle[address]
+            self.address = str((transport.get_extra_info("peername") or ("",))[0])
+            self.alike = idle[self.address]
             self.alike[self] = None
-            waiting = [other for other in self.alike if other.cycle is None or other.cycle.response_complete]
+            # Many come before one that is told to go has gone.
+            waiting = [other for other in self.alike if not other.transport.is_closing()
+                       and (other.cycle is None or other.cycle.response_complete)]
             if len(waiting) > MOST_IDLE:
                 waiting[0].transport.close()
             self.loop.call_later(PATIENCE, self._look, None)
@@ -92,6 +94,8 @@ def patient() -> type[asyncio.Protocol]:
         def connection_lost(self, exc: Exception | None) -> None:
             """It counts no more."""
             self.alike.pop(self, None)
+            if not self.alike:
+                idle.pop(self.address, None)
             super().connection_lost(exc)
 
         def _look(self, seen: Any) -> None:
