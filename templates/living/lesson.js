@@ -46,7 +46,7 @@ function formulaOf(stop) {
   if (stop.kind === "line") return [`${stop.across ? "⟂" : "∥"} ${indexed(stop.name)}`];
   if (stop.rate) {
     const w = Math.abs(here(stop.rate)), l = apart(...stop.along), value = apart(...endsOf(stop)), of = stop.twice ? `V<sub>${indexed(stop.name)}</sub>` : `l<sub>${indexed(stop.name)}</sub>`;
-    return [`${lettered(stop.letter.replace(/\^(.)/, "^{$1}"))} = ${stop.twice ? "2·" : ""}${calledHere(stop.rate)}${stop.power === 2 ? "²" : ""}·${of}`,
+    return [`${stop.letter && `${symbolMarkup(stop.letter.replace("̅", ""))} = `}${stop.twice ? "2·" : ""}${calledHere(stop.rate)}${stop.power === 2 ? "²" : ""}·${of}`,
       `= ${product([...(stop.twice ? [[2, 1]] : []), [w, stop.power], [l, 1]], value, "=")} ${unit}`, sized(value)];
   }
   if (stop.force) return [`${calledHere(stop.force)} = ${rounded(apart(...endsOf(stop)), 4)} ${unit}`, sized(apart(...endsOf(stop)))];
@@ -79,20 +79,17 @@ function sentencesOf(stop) {
   return found;
 }
 
-const titleOf = (stop) => say(`title: ${stop.kind === "lay" ? stop.rule : stop.kind}`);
-
 function tellLesson() {
   const stop = stopNow(), words = $("told"), all = lesson.told.stops.length;
   $("lessonScrub").value = lesson.at + 1;
-  $("lessonScrub").setAttribute("aria-valuetext", stop ? `${lesson.at + 1}. ${titleOf(stop)}` : "0");
+  $("lessonScrub").setAttribute("aria-valuetext", stop ? `${lesson.at + 1}. ${stop.title}` : "0");
   $("lessonBack").disabled = lesson.at < 0;
   $("lessonNext").disabled = lesson.at === all - 1;
   const moment = momentOf(machine.phi), changes = record.motion && changed().length ? `, ${say("with other numbers")}` : "";
   $("lessonPhi").textContent = moment;
   if (!stop) { words.innerHTML = `<h2>${plain(planOf(lesson.told.plan).title)}${plain(changes)}</h2><p>${plain(say("begin"))}</p>`; return; }
-  const head = `<h2><span class="count">${plain(say("step {n} of {all}", { n: lesson.at + 1, all }))}</span> ${plain(titleOf(stop))}${plain(changes)}</h2>`;
-  const why = record.words[`why: ${stop.kind === "lay" ? stop.rule : stop.kind}`];
-  words.innerHTML = `${head}<p>${sentencesOf(stop).join(" ")}</p>${why ? `<p class="hint">${plain(why)}</p>` : ""}`;
+  const head = `<h2><span class="count">${plain(say("step {n} of {all}", { n: lesson.at + 1, all }))}</span> ${plain(stop.title)}${plain(changes)}</h2>`;
+  words.innerHTML = `${head}<p>${sentencesOf(stop).join(" ")}</p>${stop.why ? `<p class="hint">${plain(stop.why)}</p>` : ""}`;
 }
 
 // --- the equation ---------------------------------------------------------------------------------------------------------

@@ -7,8 +7,8 @@ point where the lines cross, the rate of turning that follows from it, points by
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets.construction import protocol, rules
 from tmm_sheets.construction.step import Plan, Step
@@ -16,22 +16,52 @@ from tmm_sheets.mechanism.groups.contexts import CLOSE
 from tmm_sheets.methods.linkage import accelerations as acc
 from tmm_sheets.methods.linkage import velocities as vel
 from tmm_sheets.note.sections.kinematics import vector_equations
-from tmm_sheets.words import tr
+from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
     from tmm_sheets.record.step_index import StepIndex
 
-SIZES = {
-    vel.CRANK_VELOCITY: ("V", 1, 2, (0, 1)),
-    vel.RIGID: ("V", 1, 1, (2, 3)),
-    acc.NORMAL: ("a^n", 2, 1, (2, 3)),
-    acc.TANGENTIAL: ("a^τ", 1, 1, (2, 3)),
-    acc.CORIOLIS: ("a^k", 1, 1, (2, 3)),
+ROTATION = marked("A point of a turning link moves across the line to the centre, by ω·l.")
+
+
+class Laid(NamedTuple):
+    """A vector of known size: its title and why it is so, the power of the rate of turning and which argument that is.
+
+    ``ends`` are the arguments that are the ends of what it is times; it stands ``across`` that, turned by a quarter.
+    """
+
+    title: str
+    why: str
+    power: int
+    rate: int
+    ends: tuple[int, int]
+    across: bool = True
+
+
+LAID = {
+    vel.CRANK_VELOCITY: Laid(marked("Velocity of the crank pin"), ROTATION, 1, 2, (0, 1)),
+    vel.RIGID: Laid(marked("Velocity of rotation"), ROTATION, 1, 1, (2, 3)),
+    acc.NORMAL: Laid(marked("Normal acceleration"),
+                     marked("A point that goes round a centre is drawn to it, the more the faster: ω²·l."), 2, 1, (2, 3), False),
+    acc.TANGENTIAL: Laid(marked("Tangential acceleration"),
+                         marked("The link turns faster and faster: its point gains ε·l across the link."), 1, 1, (2, 3)),
+    acc.CORIOLIS: Laid(marked("Coriolis acceleration"),
+                       marked("The block slides on a link that turns: half comes from the turning of its velocity, "
+                              "half from the growing radius."), 1, 1, (2, 3)),
 }
-"""Vectors of known size: letter, power of the rate of turning, which argument that is, and the two ends of what it is times."""
-TURNED = (vel.CRANK_VELOCITY, vel.RIGID, acc.TANGENTIAL, acc.CORIOLIS)
-"""Vectors across what they are times."""
+OTHERS = {
+    "force": (marked("Force"), ""),
+    "line": (marked("Direction without length"),
+             marked("The direction is known from the pair or the link, the length is not: a line, underlined once.")),
+    "meet": (marked("The lines cross"), marked("Two directions give two lengths: both are measured on the plan.")),
+    "similar": (marked("Similarity"),
+                marked("The figure of a link and that of its vectors are similar and lettered the same way round.")),
+    "rate": (marked("How the link turns"), marked("The vector put to its point on the mechanism shows the sense of turning.")),
+    "close": (marked("The polygon closes"), marked("A link in balance has a closed polygon of forces.")),
+    "draw": (marked("Construction"), ""),
+}
+"""Titles of other stops, and why what is drawn is so."""
 RATES = (vel.ANGULAR_VELOCITY, acc.ANGULAR_ACCELERATION)
 
 
@@ -69,7 +99,8 @@ class _Lesson:
     """One plan.
 
     A stop has the ``step`` it draws, its ``kind``, ``tail`` and ``head`` of what is drawn, ``across`` if that is turned by a
-    quarter against ``along``, the two points or the direction it is taken from, ``say``, a sentence, and what its size is made of.
+    quarter against ``along``, the two points or the direction it is taken from, its ``title``, ``say``, a sentence, ``why`` it is
+    so, and what its size is made of.
     """
 
     def __init__(self, index: StepIndex, plan: Plan, equations: list[tuple[Step | None, str, Sides]]) -> None:
@@ -103,63 +134,54 @@ class _Lesson:
         return place
 
     def _line(self, step: Step, start: Step, along: Step) -> dict[str, Any]:
-        points = [a for a in (along.args[0].args if along.rule is rules.TURN else along.args) if isinstance(a, Step)]
         across = along.rule is rules.TURN
-        name = protocol.letter_of(along).replace("⟂", "")
+        of = along.args[0] if across else along
+        assert isinstance(of, Step)
+        points, name = [a for a in of.args if isinstance(a, Step)], protocol.letter_of(of)
         told = tr("Through {point} perpendicular to {line} draw a line: its length is not known yet.") if across else tr(
             "Through {point} parallel to {line} draw a line: its length is not known yet.")
         ray = len(points) == 2 and all(a.rule.gives == "point" for a in points)
-        return {"step": self.index.id(step), "kind": "line", "tail": self.index.id(start), "direction": self.index.id(along),
-                "across": across, "along": [self.index.id(a) for a in points] if ray else [], "name": name,
-                "say": told.format(point=protocol.letter_of(start), line=name)}
+        return _kind("line") | {
+            "step": self.index.id(step), "tail": self.index.id(start), "direction": self.index.id(along), "across": across,
+            "along": [self.index.id(a) for a in points] if ray else [], "name": name,
+            "say": told.format(point=protocol.letter_of(start), line=name)}
 
     def _stop(self, step: Step) -> dict[str, Any] | None:
         """A stop of a step that draws something or gives a rate of turning; none of others."""
         args = [self.index.id(a) if isinstance(a, Step) else "" for a in step.args]
         stop: dict[str, Any] = {"step": self.index.id(step), "say": protocol.sentence_of_any_angle(step)}
         rule = step.rule
-        if rule in SIZES:
-            letter, power, rate, (a, b) = SIZES[rule]
-            tail = args[0] if rule is not vel.CRANK_VELOCITY else self.index.id(self.plan[str(self.plan.pole)])
-            times = f"{protocol.letter_of(step.args[a])}{protocol.letter_of(step.args[b])}"
-            return stop | {"kind": "lay", "rule": rule.name, "tail": tail, "across": rule in TURNED, "along": [args[a], args[b]],
-                           "letter": letter, "rate": args[rate], "power": power, "twice": rule is acc.CORIOLIS,
-                           "name": times, "centre": protocol.letter_of(step.args[a])}
+        if rule in LAID:
+            laid, tail = LAID[rule], args[0] if rule is not vel.CRANK_VELOCITY else self.index.id(self.plan[str(self.plan.pole)])
+            a, b = laid.ends
+            letter = next((s.symbol for s in self.plan.segments if s.head is step and self.index.id(s.tail) == tail), "")
+            return stop | {"kind": "lay", "title": tr(laid.title), "why": tr(laid.why), "tail": tail, "across": laid.across,
+                           "along": [args[a], args[b]], "letter": letter, "rate": args[laid.rate], "power": laid.power,
+                           "twice": rule is acc.CORIOLIS,
+                           "name": f"{protocol.letter_of(step.args[a])}{protocol.letter_of(step.args[b])}"}
         if rule is rules.SHIFT:
-            return stop | {"kind": "lay", "rule": "force", "tail": args[0], "across": False, "along": [], "force": args[1]}
+            return stop | _kind("force") | {"kind": "lay", "tail": args[0], "across": False, "along": [], "force": args[1]}
         if rule is rules.LINE_LINE:
-            return stop | {"kind": "meet", "of": [self.index.id(s.tail) for s in self.plan.segments if s.head is step]}
+            return stop | _kind("meet") | {"of": [self.index.id(s.tail) for s in self.plan.segments if s.head is step]}
         if rule is vel.SIMILAR:
             names = [protocol.letter_of(a) for a in step.args]
-            return stop | {"kind": "similar", "tail": args[0], "to": args[1], "places": args[2:], "names": names}
+            return stop | _kind("similar") | {"tail": args[0], "to": args[1], "places": args[2:], "names": names}
         if rule in RATES and all(args):
-            return stop | {"kind": "rate", "along": args[:2], "tail": args[2], "head": args[3],
-                           "name": f"{protocol.letter_of(step.args[0])}{protocol.letter_of(step.args[1])}",
-                           "centre": protocol.letter_of(step.args[0])}
+            return stop | _kind("rate") | {"along": args[:2], "tail": args[2], "head": args[3],
+                                           "name": f"{protocol.letter_of(step.args[0])}{protocol.letter_of(step.args[1])}"}
         if rule is CLOSE:
-            return stop | {"kind": "close", "tail": args[0], "head": args[1]}
-        return stop | {"kind": "draw"} if rule.helpers is not None and rule.gives in ("point", "vector", "force") else None
+            return stop | _kind("close") | {"tail": args[0], "head": args[1]}
+        return stop | _kind("draw") if rule.helpers is not None and rule.gives in ("point", "vector", "force") else None
 
 
-def titles() -> Iterator[tuple[str, str]]:
-    """Titles of stops by kind or rule, each with its key."""
-    yield "normal acceleration", tr("Normal acceleration")
-    yield "tangential acceleration", tr("Tangential acceleration")
-    yield "Coriolis acceleration", tr("Coriolis acceleration")
-    yield "velocity of the crank pin", tr("Velocity of the crank pin")
-    yield "velocity on a turning link", tr("Velocity of rotation")
-    yield "force", tr("Force")
-    yield "line", tr("Direction without length")
-    yield "meet", tr("The lines cross")
-    yield "similar", tr("Similarity")
-    yield "rate", tr("How the link turns")
-    yield "close", tr("The polygon closes")
-    yield "draw", tr("Construction")
+def _kind(kind: str) -> dict[str, Any]:
+    title, why = OTHERS[kind]
+    return {"kind": kind, "title": tr(title), "why": tr(why) if why else ""}
 
 
 def lesson_words() -> dict[str, str]:
     """Texts of the lesson by their keys."""
-    return {f"title: {key}": said for key, said in titles()} | {
+    return {
         "lesson": tr("Lesson"),
         "mechanism": tr("Mechanism"),
         "which plan": tr("Which plan"),
@@ -170,17 +192,6 @@ def lesson_words() -> dict[str, str]:
         "lecture": tr("Lecture"),
         "copy link": tr("Copy link"),
         "copied": tr("The link is copied"),
-        "why: normal acceleration": tr("A point that goes round a centre is drawn to it, the more the faster: ω²·l."),
-        "why: tangential acceleration": tr("The link turns faster and faster: its point gains ε·l across the link."),
-        "why: Coriolis acceleration": tr("The block slides on a link that turns: half comes from the turning of its velocity, "
-                                         "half from the growing radius."),
-        "why: velocity of the crank pin": tr("A point of a turning link moves across the line to the centre, by ω·l."),
-        "why: velocity on a turning link": tr("A point of a turning link moves across the line to the centre, by ω·l."),
-        "why: line": tr("The direction is known from the pair or the link, the length is not: a line, underlined once."),
-        "why: meet": tr("Two directions give two lengths: both are measured on the plan."),
-        "why: similar": tr("The figure of a link and that of its vectors are similar and lettered the same way round."),
-        "why: rate": tr("The vector put to its point on the mechanism shows the sense of turning."),
-        "why: close": tr("A link in balance has a closed polygon of forces."),
         "nothing found": tr("Nothing found"),
         "with other numbers": tr("with other numbers than the project's"),
     }
