@@ -1,11 +1,16 @@
 """The formulas of the law on a cam's sheet are those that it is drawn by, on the rise and on the way back."""
 
 import re
+from itertools import combinations
 from math import pi
 
 import numpy as np
 import pytest
+import shapely
 
+from tests import labels
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.marks import Text
 from tmm_sheets.methods.cams.cam_laws import LAWS, PositionFunction
 from tmm_sheets.sheets.cams.cam_law import _forms, _phases, _written
 
@@ -63,3 +68,18 @@ def test_every_form_says_all_of_it(name):
         assert form.size[1] == pytest.approx(12.0 + form.pitch * max(map(len, columns)))
         assert form.pitch >= 1.6 * height
     assert min(form.size[0] for form in forms[-4:]) == min(form.size[0] for form in forms)
+
+
+@pytest.mark.parametrize("name", [*FORMS, "trapezoid"])
+def test_no_exponent_stands_in_the_index_of_the_line_above(name):
+    """The strokes of the letters decide, not their boxes."""
+    law = PositionFunction.of(1.39626, 0.5, 1.39626, 0.02, LAWS[name])
+    for form in _forms(law):
+        for column in form.columns:
+            canvas, at = Canvas(), 500.0
+            canvas.lines(complex(0.0, at), column, form.pitch, form.height)
+            texts = [mark for mark in canvas.marks if isinstance(mark, Text)]
+            strokes = {k: shapely.MultiLineString([[(z.real, z.imag) for z in line] for line in labels.inked(text)])
+                       for k, text in enumerate(texts) if labels.inked(text)}
+            for (k, one), (n, other) in combinations(strokes.items(), 2):
+                assert texts[k].at.imag == texts[n].at.imag or one.distance(other) > labels.PEN, (texts[k].text, texts[n].text)

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+from tests import labels
 from tmm_sheets import catalogue
 from tmm_sheets.drawing.ink_index import InkIndex, enters
 from tmm_sheets.drawing.marks import Text
@@ -35,3 +36,11 @@ def test_names_of_circles_stand_clear_of_all_lines(name):
             over = enters((ink.a - run.at) * back, (ink.b - ink.a) * back, 0.3, 0.0, corners.real.max() - 0.6, run.height)
             assert not over.any(), (group.text, run.text, [ink.marks[k] for k in ink.of[over]][:2])
     assert len(found) == 11
+
+
+@pytest.mark.parametrize("name", ["transport/press@05-ЭПС-101", "transport/diesel@03-Т-693"])
+def test_no_line_runs_over_letters(name):
+    """An arrow head lay on the name on its own shelf; the centre distance was lettered over a tooth and a circle."""
+    drawing = composed(Project(catalogue.read(name)), 3).drawing
+    assert sum(isinstance(mark, Text) for mark in drawing.marks) > 100
+    assert [found for found in labels.crossings(drawing) if found[3] != "table"] == []

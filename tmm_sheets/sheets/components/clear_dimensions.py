@@ -36,21 +36,23 @@ def crossed(ink: InkIndex, a: complex, b: complex, offset: float, text: str, sha
 
 
 def dimension(canvas: Canvas, first: int, a: complex, b: complex, offsets: Iterable[float], text: str,
-              factor: float = 1.0) -> None:
+              factor: float = 1.0, heights: Iterable[float] = (3.5,), shares: Iterable[float] = SHARES) -> None:
     """A dimension at the first of the offsets with nothing in its lettering and little along its line.
 
-    What is drawn is seen from the mark ``first`` on; it measures ``factor`` per mm.
+    So, too, with the first of the ``heights`` of its lettering and of its ``shares`` of the line. What is drawn is seen from the
+    mark ``first`` on; it measures ``factor`` per mm.
     """
     if not abs(b - a) > 0:
         return
     ink, u = InkIndex(canvas.marks[first:]), (b - a) / abs(b - a)
     long = Box(2.0, -ALONG, abs(b - a) - 2.0, ALONG)
 
-    def ill(place: tuple[float, float]) -> int:
-        return 10 * crossed(ink, a, b, place[0], text, place[1]) + ink.count_in(long, a + place[0] * 1j * u, phase(u))
+    def ill(place: tuple[float, float, float]) -> int:
+        offset, height, share = place
+        return 10 * crossed(ink, a, b, offset, text, share, height) + ink.count_in(long, a + offset * 1j * u, phase(u))
 
-    offset, share = min(((offset, share) for offset in offsets for share in SHARES), key=ill)
-    canvas.dimension(a, b, offset, text, share=share, factor=factor)
+    offset, height, share = min(product(offsets, heights, shares), key=ill)
+    canvas.dimension(a, b, offset, text, height, share, factor)
 
 
 HEIGHT, BETWEEN = 2.5, 0.8

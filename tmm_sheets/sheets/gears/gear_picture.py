@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from cmath import phase, rect
-from itertools import product
 from math import degrees, pi, radians
 from typing import TYPE_CHECKING, cast
 
@@ -17,7 +16,7 @@ from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Line
 from tmm_sheets.numbers import degrees_and_minutes, fixed
-from tmm_sheets.sheets.components.clear_dimensions import around, crossed
+from tmm_sheets.sheets.components.clear_dimensions import around, crossed, dimension
 from tmm_sheets.sheets.gears.gear_marks import Window, hatch_between
 from tmm_sheets.sheets.player import PlanFrame, play, ratio, stage, standard
 from tmm_sheets.words import tr
@@ -312,11 +311,10 @@ class GearPicture:
         """Centre distance at the edge of the picture, lettered where least is drawn, as near to the middle as can be."""
         top, bottom = (self.centre(self.gear.wheels[i - 1]) for i in ((2, 1) if self.gear.internal else (1, 2)))
         offset, text = 12 - (self.box.x1 - 12 - top.real), f"a_w = {fixed(self.gear.a_w * 1e3, 2)}"
-        a, b, ink = bottom + 12, top + 12, InkIndex(self.canvas.marks[self.first:])
+        a, b = bottom + 12, top + 12
         end = min((letter(text, 5.0).width / 2 + 2.0) / abs(b - a), 0.5)
-        tried = product((5.0, 3.5), sorted(np.linspace(end, 1.0 - end, 101), key=lambda share: abs(share - 0.5)))
-        height, share = min(tried, key=lambda way: crossed(ink, a, b, offset, text, way[1], way[0]))
-        self.canvas.dimension(a, b, offset, text, height, share, 1e3 * self.gear.a_w / abs(b - a))
+        shares = sorted(np.linspace(end, 1.0 - end, 101), key=lambda share: abs(share - 0.5))
+        dimension(self.canvas, self.first, a, b, [offset], text, 1e3 * self.gear.a_w / abs(b - a), (5.0, 3.5), shares)
 
     def unrolling(self, wheel: GearWheel) -> None:
         """Divisions of P_wN, equal arcs, tangents and the involute through their ends."""
