@@ -33,11 +33,13 @@ gc.set_threshold(50_000, 20, 20)
 
 
 LONGEST = (
-    "living/test_page", "test_docs", "test_cli", "output/test_batch", "test_counts", "compare/test_cad", "compare/test_image",
-    "sheets/test_kept_sheets", "test_api", "compare/test_measured", "compare/test_own_layout", "stress/test_stress", "test_quoted",
-    "bench/test_bench", "note/test_content", "sheets/test_user_projects", "test_words", "compare/test_languages",
+    "compare/test_cad", "test_cli", "test_docs", "living/test_page", "test_counts", "sheets/test_kept_sheets", "compare/test_image",
+    "output/test_batch", "test_api", "compare/test_plan_judge", "compare/test_languages", "stress/test_stress",
+    "compare/test_measured", "test_quoted", "bench/test_bench", "sheets/test_plan_scales", "note/test_content",
+    "record/test_record", "sheets/test_user_projects", "note/test_notes", "test_words", "task/families/test_transport",
+    "note/test_files",
 )
-"""Files that take longest, the longest first (2026-11-28): begun last they would leave one worker alone."""
+"""Files that take longest, the longest first (processor, 2026-11-29): begun last they would leave one worker alone."""
 
 
 def pytest_collection_modifyitems(items):

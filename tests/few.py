@@ -17,3 +17,14 @@ def few(cases, *kept):
     gone = [case for case in kept if case not in cases]
     assert not gone, gone
     return [case if case in kept else seldom(*(case if isinstance(case, tuple) else (case,))) for case in cases]
+
+
+def all_hold(check, cases):
+    """A check of many cases that cost next to nothing each, as one test: it fails with a list of all cases that do not hold."""
+    failed = {}
+    for case in cases:
+        try:
+            check(*case if isinstance(case, tuple) else (case,))
+        except Exception as e:
+            failed[str(case)] = f"{type(e).__name__}: {e}"
+    assert not failed, "\n".join(f"{case}: {said}" for case, said in failed.items())

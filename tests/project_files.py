@@ -9,6 +9,8 @@ import copy
 import json
 import re
 import tomllib
+from functools import cache
+from pathlib import Path
 
 from tmm_sheets import catalogue
 from tmm_sheets.project import Project
@@ -39,6 +41,15 @@ REDUCER = {"reducer": {"scheme": "external-internal", "simple": "after", "input_
                        "teeth": {"z5": 12}, "module": "6 mm", "simple_module": "12 mm", "satellites": 3}}
 CAM = {"cam": {"follower": "translating roller", "law": "sine", "rise": "100 deg", "fall": "70 deg", "stroke": "10 mm",
                "pressure_angle": "30 deg"}}
+
+
+PROJECTS = Path(__file__).parent / "projects"
+
+
+@cache
+def known(name):
+    """A shipped project, or the file of one in tests/projects, for who only reads it: what is computed of it serves all tests."""
+    return Project(catalogue.read(str(PROJECTS / name) if name.endswith(".toml") else name))
 
 
 NOMINAL = {"cycle.division": "nominal"}

@@ -41,8 +41,8 @@ def body(node):
 
 
 def last(node):
-    """Last part of a dotted name."""
-    return ast.unparse(node).split(".")[-1]
+    """Last part of a dotted name; empty for what is no name."""
+    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
 
 
 def raised(node, own, seen=()):
@@ -50,14 +50,14 @@ def raised(node, own, seen=()):
 
     Not those raised again, nor those it catches; what a subclass has to say is no error.
     """
-    found, caught = set(), set()
-    for child in body(node):
+    found, caught, nodes = set(), set(), [*body(node)]
+    for child in nodes:
         if isinstance(child, ast.ExceptHandler) and child.type is not None:
             caught |= {last(t) for t in (child.type.elts if isinstance(child.type, ast.Tuple) else [child.type])}
         elif isinstance(child, ast.Call) and (name := last(child.func)) in own and name not in seen:
             found |= raised(own[name], own, (*seen, name))
-    itself = {last(c.exc.func if isinstance(c.exc, ast.Call) else c.exc) for c in body(node) if isinstance(c, ast.Raise) and c.exc}
-    return {name for name in (found - caught) | itself if name[0].isupper()} - {"NotImplementedError"}
+    itself = {last(c.exc.func if isinstance(c.exc, ast.Call) else c.exc) for c in nodes if isinstance(c, ast.Raise) and c.exc}
+    return {name for name in (found - caught) | itself if name[:1].isupper()} - {"NotImplementedError"}
 
 
 def named(doc):

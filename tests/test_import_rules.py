@@ -115,16 +115,18 @@ def imports(tree):
 
     def visit(node, inside, typing):
         for child in ast.iter_child_nodes(node):
+            if isinstance(child, ast.expr):
+                continue  # no statement stands in an expression
             if isinstance(child, ast.Import):
                 for alias in child.names:
                     yield alias.name, inside, typing
             elif isinstance(child, ast.ImportFrom):
                 assert child.level == 0, "relative import"
                 yield from ((f"{child.module}.{alias.name}", inside, typing) for alias in child.names)
-            elif isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING":
+            elif isinstance(child, ast.If) and isinstance(child.test, ast.Name) and child.test.id == "TYPE_CHECKING":
                 yield from visit(child, inside, True)
             else:
-                deeper = inside or isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
+                deeper = inside or isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef)
                 yield from visit(child, deeper, typing)
 
     yield from visit(tree, False, False)

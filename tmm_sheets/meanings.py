@@ -39,7 +39,18 @@ def folder(language: str) -> Path:
 @cache
 def words(language: str) -> dict[str, Any]:
     """Single words, units and meanings of letters: ``words.toml`` of a language."""
-    path = folder(language) / "words.toml"
+    return tables_of(folder(language) / "words.toml")
+
+
+@cache
+def tables_of(path: Path) -> dict[str, Any]:
+    """Tables of a TOML file of the templates, which a department may change.
+
+    Raises
+    ------
+    BadInput
+        when it is not valid.
+    """
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except tomllib.TOMLDecodeError as e:

@@ -360,11 +360,11 @@ def test_a_note_in_another_language(language, name, foreign):
 
 def test_arms_belong_to_the_links_of_their_index():
     """Link 2 has no part in h21,0; one digit each is told without a comma."""
-    assert forces._of_group("h50", ("4", "5"))
-    assert forces._of_group("h21,0", ("20", "21"))
-    assert not forces._of_group("h21,0", ("2", "3"))
-    assert forces._of_group("h2,10", ("2", "3"))
-    assert not forces._of_group("h2,10", ("1", "4"))
+    assert forces.is_of_group("h50", ("4", "5"))
+    assert forces.is_of_group("h21,0", ("20", "21"))
+    assert not forces.is_of_group("h21,0", ("2", "3"))
+    assert forces.is_of_group("h2,10", ("2", "3"))
+    assert not forces.is_of_group("h2,10", ("1", "4"))
 
 
 def undrawn(name):

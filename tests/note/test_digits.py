@@ -19,9 +19,9 @@ A, B, C, D = (e.Argument(i) for i in range(4))
 
 def printed(tree, values, units=(), unit="", result=None):
     """The line of numbers of a formula."""
-    quantities = [NoteQuantity("abcd"[i], v, units[i] if units else "", f"plan/{i}") for i, v in enumerate(values)]
+    quantities = [NoteQuantity("abcd"[i], v, units[i] if units else "", step=f"plan/{i}") for i, v in enumerate(values)]
     gives = float(np.real(e.evaluate(tree, values))) if result is None else result
-    said = Reader(None, "ru", None, {}).written("y", tree, quantities, NoteQuantity("", gives, unit, "plan/y"))
+    said = Reader(None, "ru", None, {}).written("y", tree, quantities, NoteQuantity("", gives, unit, step="plan/y"))
     return line_of(equation(said.numbers))
 
 

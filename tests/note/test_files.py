@@ -96,7 +96,7 @@ def test_the_short_way_of_frames_has_three_pages_and_two(cam):
 def test_the_order_is_that_of_the_manual_named_and_not_of_the_name(key, first):
     text = catalogue.read("transport/press@05-ЭПС-123").text
     text = text.replace('manual = "003"', key).replace('name = "transport/press@05-ЭПС-123"', 'name = "own"', 1)
-    front, sections = composing._order_of(Project(variant.parse(text, "own.toml")))
+    front, sections = composing.order_of(Project(variant.parse(text, "own.toml")))
     assert front[0] == first
     names = [s["template"] for s in sections]
     assert (names.index("flywheel") < names.index("forces")) is (first == "task")

@@ -96,7 +96,7 @@ def test_the_second_time_nothing_is_composed(place, tmp_path, monkeypatch, capsy
     assert len(list(place.iterdir())) in (4, 5)  # sheet, arrangement, what was asked; the program, unless known
 
 
-def test_steps_of_a_kept_sheet_with_details_are_made(place):
+def test_steps_of_a_kept_sheet_with_details_are_made():
     """Its views are asked again, without the lettering for which a place is enlarged."""
     made = sheet.composed(opened("lugansk/shaper"), 1)
     assert any(part.draw == "details.dense" for part in made.parts)
@@ -143,8 +143,7 @@ def test_other_bytes_are_no_sheet(data):
 
 
 def test_a_sheet_cut_short_is_none():
-    with kept.unused():
-        data = sheet.stored(sheet.composed(opened("sixbar/8:3"), 1))
+    data = sheet.stored(sheet.composed(opened("sixbar/8:3"), 1))
     assert sheet.loaded(data) is not None
     for end in (10, len(data) // 3, len(data) // 2, len(data) - 16, len(data) - 8, len(data) - 1):
         assert sheet.loaded(data[:end]) is None

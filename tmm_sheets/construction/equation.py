@@ -69,6 +69,12 @@ class Quantity:
         full = self.decimals and of.number >= self.digits and "·" not in text
         return f"{whole}{point}{fraction:0<{self.decimals}}" if full else text
 
+    def operand(self, of: Digits) -> Operand:
+        """What stands for it in a formula with numbers."""
+        text = self.written(of)
+        angle = Figures(degrees_and_minutes(self.value, of.angle)) if self.unit == "rad" else None
+        return Operand(Figures(text, self), angle, text.startswith("−"))
+
 
 def equation(of: Expression | Callable[..., Any], quantities: Sequence[Quantity], result: Quantity, in_letters: bool = True,
              unit: str = "") -> str:
@@ -78,11 +84,8 @@ def equation(of: Expression | Callable[..., Any], quantities: Sequence[Quantity]
     the result.
     """
     tree = simplified(of if isinstance(of, Expression) else _traced(of, len(quantities)))
-    values, angle = [q.value for q in quantities], result.unit == "rad"
-    found, of_result = digits.chosen(tree, values, [q.unit == "rad" for q in quantities], [q.digits for q in quantities],
-                                     result.value, 0 if angle else result.digits, angle, result.decimals,
-                                     [i for i, q in enumerate(quantities) if q.decimals])  # fmt: skip
-    numbers = [_operand(q, d) for q, d in zip(quantities, found, strict=True)]
+    angle = result.unit == "rad"
+    numbers, of_result = in_numbers(tree, quantities, replace(result, digits=0) if angle else result)
     turned = angle and isinstance(tree, Operation) and tree.name in "*/"  # of a quotient that is an angle, π is half a turn
 
     def line(operands: Sequence[Operand]) -> str:
@@ -110,10 +113,15 @@ def _is_sum(symbol: str) -> bool:
     return " + " in symbol or " − " in symbol or symbol.startswith("−")
 
 
-def _operand(q: Quantity, of: Digits) -> Operand:
-    text = q.written(of)
-    angle = Figures(degrees_and_minutes(q.value, of.angle)) if q.unit == "rad" else None
-    return Operand(Figures(text, q), angle, text.startswith("−"))
+def in_numbers(tree: Expression, quantities: Sequence[Quantity], result: Quantity) -> tuple[list[Operand], int]:
+    """Operands of a formula with the digits with which it comes out, and the digits of its result.
+
+    A result in radians that has no digits of its own is told in degrees alone: found are the places behind the minutes.
+    """
+    found, of_result = digits.chosen(
+        tree, [q.value for q in quantities], [q.unit == "rad" for q in quantities], [q.digits for q in quantities], result.value,
+        result.digits, result.unit == "rad", result.decimals, [i for i, q in enumerate(quantities) if q.decimals])  # fmt: skip
+    return [q.operand(d) for q, d in zip(quantities, found, strict=True)], of_result
 
 
 def digits_for(value: float, decimals: int) -> int:

@@ -328,7 +328,8 @@ def _parted(section: Sequence[tuple[Block, _Slice]]) -> tuple[list[_Chunk], list
             continue
         target = f"{'figure' if isinstance(block, Figure) else 'table'}:{block.number}"
         place = of_block[before] if before >= 0 else -1
-        spoken = [of_block[k] for k, (t, _) in enumerate(texts) if isinstance(t, Paragraph) and _speaks(t, target)]
+        spoken = [of_block[k] for k, (t, _) in enumerate(texts) if isinstance(t, Paragraph)
+                  and any(isinstance(x, Reference) and x.target == target for x in t.text)]
         goes_on = isinstance(block, Figure) and block.further
         after = floating[-1].after if goes_on else _anchor(spoken, place, heads)
         floating.append(_Floating(block, size, after, min([x for x in heads if x > after], default=len(chunks)) - 1))
@@ -342,10 +343,6 @@ def _anchor(spoken: list[int], place: int, heads: list[int]) -> int:
 
     here = [k for k in spoken if part(k) == part(place)]
     return here[0] if here else spoken[0] if spoken else place
-
-
-def _speaks(b: Paragraph, target: str) -> bool:
-    return any(isinstance(x, Reference) and x.target == target for x in b.text)
 
 
 def _slices(b: Block, size: _Slice) -> list[_Slice]:

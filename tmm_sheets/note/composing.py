@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import replace
-from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import words as catalogues
 from tmm_sheets.construction.formula import Node, letters_of, reworded
-from tmm_sheets.errors import BadInput, CannotBuild, Problem
-from tmm_sheets.meanings import bare, words
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.meanings import bare, tables_of, words
 from tmm_sheets.note.document import Block, Figure, Frame, Heading, Note, NumberedTable, NumberInText, Paragraph, changed
 from tmm_sheets.note.phrases import Numbering, Scope, Writer
 from tmm_sheets.note.pictures import Pictures
@@ -25,18 +23,9 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 
-@cache
-def _order() -> dict[str, Any]:
-    path = template("note/order.toml")
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except tomllib.TOMLDecodeError as e:
-        raise BadInput(Problem(str(e), str(path))) from None
-
-
-def _order_of(project: Project) -> tuple[list[str], list[dict[str, Any]]]:
+def order_of(project: Project) -> tuple[list[str], list[dict[str, Any]]]:
     """Names of the parts before the sections, and the sections, in the order of the manual that the project names."""
-    order = _order()
+    order = tables_of(template("note/order.toml"))
     own: dict[str, Any] = order["manuals"].get(project.variant.note.manual, {})
     sections = order["section"]
     if "sections" in own:
@@ -44,11 +33,9 @@ def _order_of(project: Project) -> tuple[list[str], list[dict[str, Any]]]:
     return own.get("front", order["front"]), sections
 
 
-@cache
 def literature() -> dict[str, str]:
     """Entries of the literature by their keys, each in the language of the source."""
-    found: dict[str, str] = tomllib.loads(template("note/literature.toml").read_text(encoding="utf-8"))
-    return found
+    return tables_of(template("note/literature.toml"))
 
 
 def reader_of(project: Project, say: Callable[[str], None] = lambda _: None) -> Reader:
@@ -79,7 +66,7 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
     numbering = Numbering(literature())
     writer = Writer(language, numbering)
     parts = _parts(project)
-    front_order, sections = _order_of(project)
+    front_order, sections = order_of(project)
     base = general(reader)
     summary = base
     before: dict[str, list[Block]] = {}

@@ -149,8 +149,9 @@ class _Writer:
         self.note, self.places = note, places
         self.made = docx.Document()
         self.ids = count(1)
-        self.headings = [(b.level if isinstance(b, Heading) else 1, self._heading_of(b), f"_Toc{i:04}") for i, b in enumerate(
-            b for b in note.blocks() if isinstance(b, Heading | Sheet))]
+        titles = ((b.level, b.said) if isinstance(b, Heading) else (1, f"{note.title_page['appendix']} {b.number}. {b.title}")
+                  for b in note.blocks() if isinstance(b, Heading | Sheet))
+        self.headings = [(level, said, f"_Toc{i:04}") for i, (level, said) in enumerate(titles)]
         owner = f"{note.frame.fields.get('institution', '')} {note.frame.fields.get('group', '')}".strip()
         self.words = note.frame.words | note.frame.fields | {"pages": str(places["pages"]), "owner": owner}
         self.pictures = rasters(note.blocks(), DPI)
@@ -163,9 +164,6 @@ class _Writer:
             note.title[:PROPERTY], note.author[:PROPERTY], note.author[:PROPERTY], "")
         props.created = props.modified = FIRST
         props.language = note.language
-
-    def _heading_of(self, b: Heading | Sheet) -> str:
-        return b.said if isinstance(b, Heading) else f"{self.note.title_page['appendix']} {b.number}. {b.title}"
 
     def _styles(self) -> None:
         for style in (style for style in self.made.styles if style.name in SIZES):

@@ -12,6 +12,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.words import both, tell
 
 if TYPE_CHECKING:
+    from tmm_sheets.note.document import Note
     from tmm_sheets.project import Project
     from tmm_sheets.task.variant import Variant
 
@@ -46,17 +47,24 @@ def run_on(variant: Variant, say: Callable[[str], None] = lambda _: None) -> Var
         as :func:`write`.
     """
     check(("pdf",))
-    from tmm_sheets.note import composing, typst_writer
     from tmm_sheets.note.document import Sheet
     from tmm_sheets.project import Project
 
-    note = composing.compose(Project(variant), say)
-    say("pages")
-    note = typst_writer.placed(note)
-    places = typst_writer.render(note)[1]
+    note, _, places = _typeset(Project(variant), say)
     first = int(places["pages"]) - sum(isinstance(b, Sheet) for b in note.body) + 1
     block = variant.title_block.model_copy(update={"first_sheet": first})
     return variant.model_copy(update={"title_block": block})
+
+
+def _typeset(project: Project, say: Callable[[str], None]) -> tuple[Note, bytes, dict[str, int]]:
+    """The note of a project, its PDF, and the pages there by number of the headings."""
+    from tmm_sheets.note import composing, typst_writer
+
+    note = composing.compose(project, say)
+    say("pages")
+    note = typst_writer.placed(note)
+    data, places = typst_writer.render(note)
+    return composing.counted(note, int(places["pages"])), data, places
 
 
 @dataclass(frozen=True)
@@ -78,13 +86,7 @@ def write(project: Project, formats: Iterable[str] = ("pdf",), say: Callable[[st
     """
     formats = tuple(formats)
     check(formats)
-    from tmm_sheets.note import composing, typst_writer
-
-    note = composing.compose(project, say)
-    say("pages")
-    note = typst_writer.placed(note)
-    data, places = typst_writer.render(note)
-    note = composing.counted(note, int(places["pages"]))
+    note, data, places = _typeset(project, say)
     made: dict[str, bytes] = {}
     for form in formats:
         if form == "pdf":

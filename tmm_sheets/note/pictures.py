@@ -126,7 +126,8 @@ class Pictures:
                 marks = tuple(k for a, b in view.spans for k in range(a, b))
                 shares = Counter(drawing.marks[k].of for k in marks)
                 if marks:
-                    self._drawn.setdefault(_drawn_by(composed, marks[0]), []).append((n, marks, True))
+                    draw = next((part.draw for part in reversed(composed.parts) if part.first <= marks[0]), "")
+                    self._drawn.setdefault(draw, []).append((n, marks, True))
                 for of, share in shares.items():
                     self._views.setdefault(of, []).append((n, marks, 2 * share > len(marks)))
                     if of.startswith("velocity plan "):
@@ -201,11 +202,6 @@ def _parts(name: str, marks: Sequence[Mark], box: Box) -> list[Figure]:
             place = Box(place.x0, max(place.y0, low - 6), place.x1, min(place.y1, high + 6))
             made.append(_figure(name, windowed(part, place.inset(MARGIN)), place))
     return [replace(figure, part=i) for i, figure in enumerate(reversed(made), 1)]
-
-
-def _drawn_by(composed: Composed, k: int) -> str:
-    """What draws the view to which a mark belongs."""
-    return next((part.draw for part in reversed(composed.parts) if part.first <= k), "")
 
 
 def _within(step: str, role: str, focus: Sequence[str]) -> bool:

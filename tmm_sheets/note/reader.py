@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction import digits, expression, protocol
+from tmm_sheets.construction import expression, protocol
 from tmm_sheets.construction.digits import DIGITS, Digits, shown
-from tmm_sheets.construction.equation import tree_of_step
+from tmm_sheets.construction.equation import Quantity, in_numbers, tree_of_step
 from tmm_sheets.construction.formula import (
     Figures,
     FormulaRow,
@@ -54,15 +54,17 @@ class Differs(CannotBuild):
 
 
 @dataclass(frozen=True)
-class NoteQuantity:
-    """A letter with its number: what an operand of a formula is, ``unit`` as the record writes it."""
+class NoteQuantity(Quantity):
+    """A letter with its number, and the step and the position that it is read from."""
 
-    symbol: str
-    value: float
-    unit: str = ""
     step: str = ""
     position: str = ""
-    digits: int = DIGITS
+
+    def operand(self, of: Digits) -> Operand:
+        """What stands for it in a formula with numbers; they know their step."""
+        node = _figures(self, of.number) if self.step else Figures(shown(self.value, of.number))
+        degrees = _degrees(self, of.angle) if self.unit == "rad" else None
+        return Operand(node, degrees, self.value < 0 and shown(self.value, of.number) != "0")
 
 
 @dataclass(frozen=True)
@@ -236,20 +238,27 @@ class Reader:
 
     def quantity(self, step: Step, symbol: str = "", unit: str | None = None) -> NoteQuantity:
         """A step as an operand."""
-        n = self.of(step, unit)
-        return NoteQuantity(symbol or symbol_of(step), n.value, self.unit_of(step) if unit is None else unit, n.step, n.position)
+        n, unit = self.of(step, unit), self.unit_of(step) if unit is None else unit
+        return NoteQuantity(symbol or symbol_of(step), n.value, unit, step=n.step, position=n.position)
 
     def measured(self, symbol: str, value: float, unit: str, step: Step) -> NoteQuantity:
         """An operand that a step gives at the position that is told."""
-        return NoteQuantity(symbol, value, unit, self.id(step), self.label)
+        return NoteQuantity(symbol, value, unit, step=self.id(step), position=self.label)
 
     def givens(self, unit: str = "") -> list[NoteQuantity]:
         """Given numbers that some step takes, each once, those of a unit or all."""
         found: dict[str, NoteQuantity] = {}
         for a in (a for step in self.book.steps.values() for a in step.args):
             if isinstance(a, GivenNumber) and a.symbol and (not unit or a.unit == unit):
-                found.setdefault(a.symbol, NoteQuantity(a.symbol, float(a), a.unit, a.name))
+                found.setdefault(a.symbol, NoteQuantity(a.symbol, float(a), a.unit, step=a.name))
         return list(found.values())
+
+    @property
+    def crank_length(self) -> NoteQuantity:
+        """Length of the crank."""
+        crank = self.project.mechanism.crank
+        place = self.origin(crank.length, "crank.length")
+        return NoteQuantity(f"l_{{{crank.pivot}{crank.pin}}}", float(crank.length), "m", step=place)
 
     def lengths(self) -> list[NoteQuantity]:
         """Lengths of the links among them."""
@@ -286,13 +295,13 @@ class Reader:
 
     def _operand(self, a: Any) -> NoteQuantity | None:
         if isinstance(a, Step):
-            value, unit, source = self.value(a), self.unit_of(a), (self.id(a), self.position(a))
+            value, unit, step, position = self.value(a), self.unit_of(a), self.id(a), self.position(a)
         elif isinstance(a, Given | GivenNumber):
             of: Any = a.value if isinstance(a, Given) else a
-            value, unit, source = of[min(self.k, len(of) - 1)] if np.ndim(of) else of, a.unit, (a.name, "")
+            value, unit, step, position = of[min(self.k, len(of) - 1)] if np.ndim(of) else of, a.unit, a.name, ""
         else:
             return NoteQuantity(number(float(a), 6), float(a)) if isinstance(a, int | float | np.number) else None
-        return NoteQuantity(self.letters_of(a), float(value), unit, *source) if _is_number(value) else None
+        return NoteQuantity(self.letters_of(a), float(value), unit, step=step, position=position) if _is_number(value) else None
 
     def written(self, symbol: str, tree: expression.Expression, quantities: Sequence[NoteQuantity],
                 result: NoteQuantity) -> ShownFormula:
@@ -300,20 +309,18 @@ class Reader:
         in_letters = [Operand(letters(q.symbol), None, bool(_SUM.search(q.symbol))) for q in quantities]
         used = [quantities[i] for i in dict.fromkeys(arguments(simplified(tree)))]
         told = [q for q in used if not _plain(q.symbol) and not _TERM.search(q.symbol)]
-        explained = [(_of_magnitude(q.symbol), self.unit(q.unit)) for q in (replace(result, symbol=symbol), *told)]
-        rounded, of_result = digits.chosen(
-            tree,
-            [q.value for q in quantities],
-            [q.unit == "rad" for q in quantities],
-            [q.digits for q in quantities],
-            result.value,
-            result.digits,
-            result.unit == "rad",
-        )
-        in_numbers = [_in_numbers(q, of) for q, of in zip(quantities, rounded, strict=True)]
+        # A letter whose magnitude stands between bars; a segment between two points is what it is.
+        explained = [(q.symbol if "–" in q.symbol else q.symbol.strip("|"), self.unit(q.unit))
+                     for q in (replace(result, symbol=symbol), *told)]
+        numbers, of_result = in_numbers(tree, quantities, result)
         gives = self._result(replace(result, digits=of_result))
-        worked_out = () if isinstance(tree, expression.Argument) else (of_tree(tree, in_numbers), Sign("="))
+        worked_out = () if isinstance(tree, expression.Argument) else (of_tree(tree, numbers), Sign("="))
         return ShownFormula(row(letters(symbol), Sign("="), of_tree(tree, in_letters)), row(*worked_out, *gives), tuple(explained))
+
+    def by_segment(self, symbol: str, segment: str, scale: Scale, mu: NoteQuantity, size: NoteQuantity, step: Step) -> ShownFormula:
+        """Formula of the ``size`` of a vector from the segment that is drawn for it and the scale factor ``mu``."""
+        tree: Any = expression.Argument(0) * expression.Argument(1)
+        return self.written(symbol, tree, [self.measured(segment, float(scale.mm(size.value)), "mm", step), mu], size)
 
     def _result(self, q: NoteQuantity) -> Iterator[Node]:
         """A result with its unit; an angle in degrees and minutes too."""
@@ -330,7 +337,8 @@ class Reader:
             value = value.get(key, {}) if isinstance(value, Mapping) else {}
         number_, name = units.split(value)
         tree: Any = {"1/s": 2 * pi * expression.Argument(0), "rpm": pi * expression.Argument(0) / 30}.get(units.common(name))
-        return None if tree is None else self.written(omega.symbol, tree, [NoteQuantity(turns, float(number_), name, path)], omega)
+        given = NoteQuantity(turns, float(number_), name, step=path)
+        return None if tree is None else self.written(omega.symbol, tree, [given], omega)
 
     def agreed(self, symbol: str, tree: expression.Expression, quantities: Sequence[NoteQuantity],
                result: NoteQuantity) -> ShownFormula:
@@ -448,11 +456,6 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float | np.number | np.ndarray) and not np.ndim(value) and not np.iscomplexobj(value)
 
 
-def _of_magnitude(symbol: str) -> str:
-    """Letter whose magnitude stands between bars; a segment between two points is what it is."""
-    return symbol if "–" in symbol else symbol.strip("|")
-
-
 _SUM = re.compile(r"(?<!^)[+−](?![^{]*\})")
 _TERM = re.compile(r"·|(?<!^)[+−](?![^{]*\})")
 
@@ -495,10 +498,6 @@ def _degrees(q: NoteQuantity, places: int = 0) -> Figures:
     text = degrees_and_minutes(q.value, places)
     return Figures(text, NumberInText(text, q.step, q.value, q.position))
 
-
-def _in_numbers(q: NoteQuantity, of: Digits) -> Operand:
-    node = _figures(q, of.number) if q.step else Figures(shown(q.value, of.number))
-    return Operand(node, _degrees(q, of.angle) if q.unit == "rad" else None, q.value < 0 and shown(q.value, of.number) != "0")
 
 
 # --- sentences of the record with letters set as letters -----------------------------------------------------------

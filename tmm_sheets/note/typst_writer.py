@@ -51,7 +51,8 @@ def render(note: Note) -> tuple[bytes, dict[str, int]]:
     """
     import json
 
-    with _compiler(source(note), pictures(note.blocks())) as compiler:
+    pictures = {f"{b.file}.svg": b.svg for b in note.blocks() if isinstance(b, Figure | Sheet)}
+    with _compiler(source(note), pictures) as compiler:
         made, warnings = compiler.compile_with_warnings(format="pdf", timestamp=0, pdf_tags=False)
         for warning in warnings:
             if "font" in warning.message:
@@ -115,11 +116,6 @@ def _compiler(source: str, files: Mapping[str, bytes]) -> Iterator[Any]:
             yield typst.Compiler(str(root / "note.typ"), root=str(root), font_paths=_fonts(), ignore_system_fonts=True)
         except (typst.TypstError, RuntimeError) as e:
             raise BadInput(Problem(str(e), str(_preamble()))) from None
-
-
-def pictures(blocks: Iterable[Block]) -> dict[str, bytes]:
-    """SVG files of the figures and sheets by their names."""
-    return {f"{b.file}.svg": b.svg for b in blocks if isinstance(b, Figure | Sheet)}
 
 
 def rasters(blocks: Iterable[Block], dpi: float) -> dict[str, bytes]:

@@ -1,11 +1,13 @@
 """Reducers: the picture of velocities and the plan of speeds against exact fractions, conditions, results, protocol."""
 
 from fractions import Fraction
+from functools import cache
 from math import pi
 
 import numpy as np
 import pytest
 
+from tests.few import all_hold
 from tests.methods.gears import reducer_cases as cases
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.methods.gears.reducer import reducer
@@ -68,9 +70,18 @@ def exact(r):
     return speeds
 
 
-@pytest.mark.parametrize(("machine", "c", "over"), COLUMNS)
-def test_speeds_of_the_graphs_are_exact(machine, c, over):
-    r = reducer(cases.column(machine, c, **over))
+@cache
+def found(case):
+    machine, c, over = COLUMNS[case]
+    return reducer(cases.column(machine, c, **over))
+
+
+def test_speeds_of_the_graphs_are_exact():
+    all_hold(has_exact_speeds, range(len(COLUMNS)))
+
+
+def has_exact_speeds(case):
+    r = found(case)
     truth, n = exact(r), rpm(r.table.input_speed)
     assert set(r.names) == set(truth)
     for link, speed in truth.items():
@@ -107,9 +118,12 @@ def test_the_sign_of_a_planetary_part_that_reverses(simple):
     assert got["deviation"] == pytest.approx(got["ratio"] / got["ratio_asked"] - 1, abs=1e-12)
 
 
-@pytest.mark.parametrize(("machine", "c", "over"), COLUMNS)
-def test_conditions_and_results(machine, c, over):
-    r = reducer(cases.column(machine, c, **over))
+def test_conditions_and_results():
+    all_hold(meets_the_conditions, range(len(COLUMNS)))
+
+
+def meets_the_conditions(case):
+    r = found(case)
     got = numbers(r.results())
     assert set(got) >= {"ratio", "ratio_planetary", "ratio_simple", "teeth", "q", "efficiency", "diameters_w", "speeds_rpm",
                         "conditions"}
@@ -163,9 +177,9 @@ def test_warnings_name_interference_and_slow_simple_stages():
     assert reducer(strict).warnings == ()
 
 
-@pytest.mark.parametrize(("machine", "c", "over"), COLUMNS[::5])
-def test_protocol_says_every_step(machine, c, over):
-    r = reducer(cases.column(machine, c, **over))
+@pytest.mark.parametrize("case", range(0, len(COLUMNS), 5))
+def test_protocol_says_every_step(case):
+    r = found(case)
     for plan in (r.velocities, r.speeds(0.05)):
         said = list(sentences(plan, 0, lambda v: v * 10))
         assert len(said) == len(plan.steps)

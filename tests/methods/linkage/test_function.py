@@ -15,12 +15,14 @@ from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.velocities import Watched, velocity_plan
 from tmm_sheets.project import Project
+from tmm_sheets.resources import variants
 
 OWN = Path(__file__).parents[2] / "projects"
-NAMES = [n for n in catalogue.shipped() if not n.startswith(("transport/", "sixbar/")) and Project(catalogue.read(n)).variant.crank]
+ALONE = {n: variants() / f"{n}.toml" for n in catalogue.shipped() if not n.startswith(("transport/", "sixbar/"))}
+ALONE |= {str(p): p for p in sorted(OWN.glob("*.toml"))}
+NAMES = [n for n, path in ALONE.items() if "[crank]" in path.read_text(encoding="utf-8")]
 NAMES += [f"sixbar/{task}:{task % 5 + 1}" for task in range(1, 11)]
 NAMES += ["transport/diesel@01-Т-27", "transport/compressor@09-В-5", "transport/press@05-ЭПС-123", "transport/crusher@12-СДМ-1908"]
-NAMES += [str(p) for p in sorted(OWN.glob("*.toml")) if Project(catalogue.read(str(p))).variant.crank]
 N = 73
 CLOSE = 1e-13
 

@@ -4,7 +4,6 @@ Truth: what a crossing of two lines starts from is reached from the pole by vect
 point of a group of class III is the exception, where two unknown vectors of one direction are drawn as one line.
 """
 
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,26 +11,18 @@ from hypothesis import given
 
 from tests.methods.linkage.mechanisms import mechanisms
 from tests.methods.settings import every_kind, tried
-from tmm_sheets import catalogue
+from tests.project_files import known
 from tmm_sheets.construction.rules import LINE_LINE
 from tmm_sheets.methods.linkage.accelerations import CORIOLIS, acceleration_plan
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.velocities import velocity_plan
-from tmm_sheets.project import Project
 from tmm_sheets.sheets.linkage.kinematics import _hinges
-from tmm_sheets.task import variant
-
-PROJECTS = Path(__file__).parents[2] / "projects"
-
-
-def project(name):
-    return Project(variant.read(PROJECTS / name) if name.endswith(".toml") else catalogue.read(name))
 
 
 @pytest.fixture(scope="module", params=["lugansk/shaper", "sixbar/3:5", "loom", "sieve.toml", "planer.toml", "conveyor.toml",
                                         "feeder.toml"])
 def study(request):
-    return project(request.param).study
+    return known(request.param).study
 
 
 def reached(plan):
@@ -97,7 +88,7 @@ def test_a_slider_on_a_moving_guide_is_told_against_its_point(study):
 @pytest.mark.parametrize(("name", "sliders"), [("planer.toml", {"E", "K"}), ("lugansk/shaper", set()), ("sixbar/3:5", set())])
 def test_sliders_on_moving_guides_have_position_numbers(name, sliders):
     """Those of fixed guides have marks along the guide instead."""
-    m = project(name).mechanism
+    m = known(name).mechanism
     fixed = {p for g in m.groups for p, guide in g.kind.guided(g) if m.guides[guide].link == m.frame}
     inner = {g.inner for g in m.groups if g.inner}
     assert set(_hinges(m, fixed)) & (inner | fixed) == sliders

@@ -3,24 +3,19 @@
 Truth: how one link moves in the frame of the other, differentiated from the positions alone; the moments of a slider about its pin.
 """
 
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tmm_sheets import catalogue
+from tests.project_files import known
 from tmm_sheets.methods.linkage.positions import position_plan
-from tmm_sheets.project import Project
-from tmm_sheets.task import variant
 
-PROJECTS = Path(__file__).parents[2] / "projects"
 STENCIL = ((1, 4 / 5), (2, -1 / 5), (3, 4 / 105), (4, -1 / 280))
 
 
 @pytest.fixture(scope="module", params=["lugansk/shaper", "loom", "sieve.toml", "planer.toml", "conveyor.toml", "feeder.toml"])
 def project(request):
-    name = request.param
-    return Project(variant.read(PROJECTS / name) if name.endswith(".toml") else catalogue.read(name))
+    return known(request.param)
 
 
 def rate(project, of):

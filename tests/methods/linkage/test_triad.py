@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from tests.methods.linkage.mechanisms import mechanism
-from tmm_sheets import catalogue
+from tests.project_files import known
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.lab.stress.draw import chain
 from tmm_sheets.mechanism.groups import TRIAD, three_legs
@@ -22,15 +22,12 @@ from tmm_sheets.mechanism.model import Crank
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.methods.linkage.checks import check_turn
 from tmm_sheets.methods.linkage.positions import position_plan
-from tmm_sheets.project import Project
 from tmm_sheets.task import variant
 
-SIEVE = Path(__file__).parents[2] / "projects" / "sieve.toml"
 
-
-@pytest.fixture(scope="module", params=["screen", "loom", "sieve"])
+@pytest.fixture(scope="module", params=["screen", "loom", "sieve.toml"])
 def project(request):
-    return Project(variant.read(SIEVE) if request.param == "sieve" else catalogue.read(request.param))
+    return known(request.param)
 
 
 def cis(x):
@@ -182,7 +179,7 @@ def test_all_ways_of_assembly_are_told_apart():
 
 def test_either_way_of_assembly_is_built():
     """The loom's plate the other way round: its own corners, the same legs."""
-    m = Project(catalogue.read("loom")).mechanism
+    m = known("loom").mechanism
     triad, rest = m.groups
     way = position_plan(m, np.array([0.0])).course(triad)
     other = next(u for n, (_, u) in enumerate(way.found) if n != way.taken)
@@ -194,7 +191,7 @@ def test_either_way_of_assembly_is_built():
 
 
 def shorter(length):
-    m = Project(catalogue.read("screen")).mechanism
+    m = known("screen").mechanism
     (g,) = m.groups
     return replace(m, groups=(replace(g, legs=(*g.legs[:2], replace(g.legs[2], length=length))),))
 
@@ -234,7 +231,7 @@ def missed(m, phi, length):
 
 
 def test_a_direction_of_no_way_of_assembly_is_refused():
-    m = Project(catalogue.read("screen")).mechanism
+    m = known("screen").mechanism
     m = replace(m, groups=(replace(m.groups[0], near=2.8),))
     with pytest.raises(CannotBuild, match=r"no way of assembly at crank angle 0 deg has CD near 160\.4.* deg"):
         check_turn(m)
@@ -273,7 +270,7 @@ def test_false_positions_lie_on_the_locus(project):
 def test_a_turn_may_end_in_another_way_of_assembly():
     """Found by the trial of random groups: refused, the mechanism would repeat after two turns only."""
     found = three_legs.Course(np.zeros(2), np.zeros(2), np.zeros(2), np.zeros((3, 2)), False, ((0j, 1 + 0j), (0j, 1j)), 0)
-    m = Project(catalogue.read("screen")).mechanism
+    m = known("screen").mechanism
     m = replace(m, groups=(replace(m.groups[0], near=0.0),))
     m.courses[m.groups[0].name] = found
     with pytest.raises(CannotBuild, match="after a turn of the crank it stands in another way of assembly"):

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.few import few
+from tests.few import all_hold, few
 from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.evenness import dense
@@ -108,8 +108,11 @@ def test_kinds_have_their_views():
     assert named("flat, spring") == {"motion", "sum_graph", "plate", "profile", "table", "spring"}
 
 
-@pytest.mark.parametrize(("name", "view_name"), VIEWS)
-def test_view_stays_in_its_place_and_fills_it(name, view_name):
+def test_views_stay_in_their_places_and_fill_them():
+    all_hold(fills_its_place, VIEWS)
+
+
+def fills_its_place(name, view_name):
     box = places(PROJECTS[name])[view_name]
     canvas = drawn_once(view_name, name)
     points = ink(canvas.marks)
@@ -271,9 +274,12 @@ def test_a_table_without_jumps_has_one_row_of_each():
 EXEMPT = ("symbol", "dimension", "hatch", "text", "table", "frame")
 
 
-@pytest.mark.parametrize(("name", "view_name"), VIEWS)
-def test_marks_know_step_and_frame(name, view_name):
+def test_marks_know_step_and_frame():
     """Every line, arc and curve besides symbols, dimensions, hatching and tables comes from a step that is there."""
+    all_hold(knows_step_and_frame, VIEWS)
+
+
+def knows_step_and_frame(name, view_name):
     data = PROJECTS[name]
     canvas = drawn_once(view_name, name)
     counted = [m.by for m in canvas.marks if not isinstance(m, Text) and (m.by is None or m.by.role not in EXEMPT)]

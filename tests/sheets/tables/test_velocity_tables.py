@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from tests.few import seldom
-from tmm_sheets import kept
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Line, Text
@@ -19,6 +18,7 @@ from tmm_sheets.sheets.sheet import composed
 @cache
 def tables(name):
     """A project, titles and columns of the tables of its sheet 1, and its scale factor of velocities."""
+    composed(Project(read(name)), 1)  # kept: then its views are asked for their steps alone
     found, project = [], Project(read(name))
     original = given_position._table_over_positions
 
@@ -26,9 +26,9 @@ def tables(name):
         found.append((title, dict(columns)))
         original(project, canvas, place, title, columns, decimals, **way)
 
-    with kept.unused(), pytest.MonkeyPatch.context() as patch:
+    with pytest.MonkeyPatch.context() as patch:
         patch.setattr(given_position, "_table_over_positions", keeping)
-        scales = composed(project, 1).scales
+        scales = composed(project, 1, steps=True).scales
     return project, found, scales["velocities"].mu
 
 

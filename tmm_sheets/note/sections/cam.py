@@ -33,7 +33,7 @@ def fields(r: Reader) -> dict[str, Any]:
         **_pressure(r),
     }
     if table.speed is not None:
-        found["speed"] = r.of_turns("cam.speed", "n", NoteQuantity("ω", float(table.speed), "rad/s", "cam.speed"))
+        found["speed"] = r.of_turns("cam.speed", "n", NoteQuantity("ω", float(table.speed), "rad/s", step="cam.speed"))
     sizes: dict[str, float] = {}
     for name in ("r0", "e", "l0", "r_roller", "rho_min"):
         told = results.get(name)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import re
-import tomllib
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from tmm_sheets.meanings import tables_of
 from tmm_sheets.note.document import NumberInText, Rows, Text, lettered
 from tmm_sheets.note.phrases import set_text
 from tmm_sheets.note.reader import Reader, marked
@@ -21,16 +20,10 @@ SHARED = {"gear": ("lugansk/shaper", "lugansk/engine")}
 """Parts that several projects of a manual have in common."""
 
 
-@cache
-def _known() -> dict[str, list[dict[str, str]]]:
-    found: dict[str, list[dict[str, str]]] = tomllib.loads(template("note/errata.toml").read_text(encoding="utf-8"))
-    return found
-
-
 def of(project: Project) -> list[dict[str, str]]:
     """Places of the manual that are known to be wrong, of the project worked out there; none for one that was changed."""
-    name = project.variant.project.name
-    found = [*_known().get(name, []), *(e for part, names in SHARED.items() if name in names for e in _known()[part])]
+    name, known = project.variant.project.name, tables_of(template("note/errata.toml"))
+    found = [*known.get(name, []), *(e for part, names in SHARED.items() if name in names for e in known[part])]
     shipped = variants() / f"{name}.toml"
     return found if found and shipped.is_file() and shipped.read_text(encoding="utf-8") == project.variant.text else []
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -28,7 +27,7 @@ def fields(r: Reader) -> dict[str, Any]:
     fw, table = r.project.flywheel, r.project.variant.flywheel
     fw.results()
     drawn, mu = fw.driving_plan["M"], fw.scales.moment
-    ordinate = NoteQuantity("y_{K}", float(np.real(drawn.value)) / mu.mu, "mm", "driving-moment/dK")
+    ordinate = NoteQuantity("y_{K}", float(np.real(drawn.value)) / mu.mu, "mm", step="driving-moment/dK")
     speed = r.step("flywheel-wheel/V")
     return {
         "label": r.label,
@@ -38,7 +37,7 @@ def fields(r: Reader) -> dict[str, Any]:
         "delta": r.of(fw.delta) if fw.given else r.number(fw.unevenness, "", "flywheel.delta"),
         "rim": table is not None and table.form == "rim",
         "driving": r.checked("M_{д}" if fw.reduced.resisting else "M_{с}", lambda y, m: y * m,
-                             [ordinate, NoteQuantity("μ_{M}", mu.mu, "N m/mm", "scales.mu_M")], drawn),
+                             [ordinate, NoteQuantity("μ_{M}", mu.mu, "N m/mm", step="scales.mu_M")], drawn),
         **{f"mu_{name}": scale_text(scale) for name, scale in vars(fw.scales).items() if hasattr(scale, "mu")},
         "pole": r.fixed(fw.pole, "mm", 1, "work/P"),
         "ab": r.of(fw.ab),
@@ -62,11 +61,11 @@ def _reduction(r: Reader) -> dict[str, Any]:
     """Reduced moment and reduced moment of inertia at the position that is told, in the words of the field."""
     fw = r.project.flywheel
     at = fw.reduced.numbered
-    omega = NoteQuantity("ω_{1}", fw.omega1, "rad/s", "crank.speed")
+    omega = NoteQuantity("ω_{1}", fw.omega1, "rad/s", step="crank.speed")
     terms = [r.measured(_term(name), float(np.real(r.value(step))), "J", step) for name, step in at.terms.items()]
     moment = at.moment()
-    n = r.of(moment)
-    power = NoteQuantity("ΣN", n.value * fw.omega1, "W", r.id(moment), n.position)
+    power = r.quantity(moment, "ΣN", "W")
+    power = replace(power, value=power.value * fw.omega1)
     own = ((name[2:], step) for name, step in at.plan.steps.items()
            if name.startswith("N_") and not name.startswith("N_G") and "(" not in name)
     return {
@@ -155,11 +154,7 @@ def _over_positions(r: Reader) -> dict[str, Any]:
 
 def _terms(r: Reader) -> Rows:
     """Terms of the reduced moment of inertia at the drawn positions; a single one is the moment itself."""
-    terms = list(_columns_of_terms(r))
+    every = (len(r.project.cycle.labels),)
+    terms = [Column(r.head(_term(name), "J"), np.broadcast_to(step.value, every).real, r.id(step), np.max(np.abs(step.value)))
+             for name, step in r.project.flywheel.reduced.numbered.terms.items()]
     return r.over_positions(r.project.cycle.drawn, terms) if len(terms) > 1 else ()
-
-
-def _columns_of_terms(r: Reader) -> Iterator[Column]:
-    for name, step in r.project.flywheel.reduced.numbered.terms.items():
-        values = np.broadcast_to(np.real(step.value), (len(r.project.cycle.labels),))
-        yield Column(r.head(_term(name), "J"), values, r.id(step), np.max(np.abs(values)))

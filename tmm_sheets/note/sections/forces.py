@@ -65,7 +65,8 @@ def _loads(r: Reader) -> dict[str, Any]:
         couple = next((c for c in study.loads[1].get(name, ()) if c.name.startswith("Mи")), None)
         if not loads and couple is None:
             continue
-        mass, moved = NoteQuantity(f"m_{{{name}}}", float(link.mass), "kg", f"link[{i}].mass"), acc.points.get(str(link.centre))
+        mass = NoteQuantity(f"m_{{{name}}}", float(link.mass), "kg", step=f"link[{i}].mass")
+        moved = acc.points.get(str(link.centre))
         steps = (loads.get("weight"), moved, loads.get("inertia"))
         cells: list[Text] = [(name,), (r.number(mass.value, "", mass.step),)]
         cells += [(r.of(step, ""),) if step is not None else ("–",) for step in steps]
@@ -79,7 +80,7 @@ def _loads(r: Reader) -> dict[str, Any]:
         rows.append(tuple(cells))
         if "inertia" in loads and moved is not None and mass.value * abs(value_at(moved, r.k)) > heaviest:
             heaviest = mass.value * abs(value_at(moved, r.k))
-            g = NoteQuantity("g", r.project.gravity, "m/s2", "forces.gravity")
+            g = NoteQuantity("g", r.project.gravity, "m/s2", step="forces.gravity")
             a = r.measured(f"a_{{{link.centre}}}", abs(value_at(moved, r.k)), "m/s2", moved)
             found["inertia"] = r.checked(f"F_{{и{name}}}", lambda x, y: x * y, [mass, a], loads["inertia"])
             if "weight" in loads:
@@ -92,8 +93,8 @@ def _inertia(r: Reader, name: str, place: str, couple: Step) -> NoteQuantity:
     of = couple.args[0]
     value = abs(float(value_at(of, r.k)))
     if isinstance(of, Step):
-        return NoteQuantity(r.letters_of(of), value, "kg*m2", r.id(of))
-    return NoteQuantity(f"J_{{S{name}}}", value, "kg*m2", place)
+        return NoteQuantity(r.letters_of(of), value, "kg*m2", step=r.id(of))
+    return NoteQuantity(f"J_{{S{name}}}", value, "kg*m2", step=place)
 
 
 def _couple_formula(r: Reader, name: str, inertia: NoteQuantity, couple: Step) -> dict[str, Any]:
@@ -128,9 +129,9 @@ def _from_diagram(r: Reader, load: Any) -> dict[str, Any]:
     area = pi * float(given.bore) ** 2 / 4
     pressure = abs(complex(value_at(load.vector, r.k))) / area + float(given.ambient)
     quantities = [
-        NoteQuantity("D", 1e3 * float(given.bore), "mm", f"force[{i}].bore"),
+        NoteQuantity("D", 1e3 * float(given.bore), "mm", step=f"force[{i}].bore"),
         r.measured(pressure_of(given.name), 1e-6 * pressure, "MPa", load.vector),
-        NoteQuantity("p_{0}", 1e-6 * float(given.ambient), "MPa", f"force[{i}].ambient"),
+        NoteQuantity("p_{0}", 1e-6 * float(given.ambient), "MPa", step=f"force[{i}].ambient"),
     ]
     said = r.checked(letters_of(given.name), lambda d, p, around: pi * d**2 / 4 * (p - around if given.ambient else p), quantities,
                      load.vector)  # fmt: skip
@@ -192,8 +193,7 @@ def _sum(r: Reader, total: Step, name: str, result: Step, length: NoteQuantity |
         tree = tree / expression.Argument(len(quantities))
         quantities.append(length)
     value = float(expression.evaluate(tree, [q.value for q in quantities]))
-    n = r.of(result)
-    said = r.agreed(symbol, tree, quantities, NoteQuantity("", n.value, r.unit_of(result), n.step, n.position))
+    said = r.agreed(symbol, tree, quantities, r.quantity(result))
     equation: list[Node] = [letters(f"ΣM_{{{about or total.args[0].name}}}"), Sign("=")]
     own = [NoteQuantity(symbol, value), *([length] if length is not None else [])]
     for i, (factors, moment) in enumerate([*terms, (own, target)]):
@@ -222,7 +222,7 @@ def _group(r: Reader, g: Any, nth: int, told: set[str]) -> dict[str, Any]:
             "centre": lettered(part.centre), "of": lettered(part.vector.name), "joint": lettered(part.at),
             **_made(r, total, part.vector.name, part.vector, length, about=part.centre),
         })  # fmt: skip
-    arms = [(name, step) for name, step in forces.arms.items() if _of_group(name, g.links) and name not in told]
+    arms = [(name, step) for name, step in forces.arms.items() if is_of_group(name, g.links) and name not in told]
     told |= {name for name, _ in arms}
     return {
         "links": g.lettered,
@@ -255,7 +255,8 @@ def _arm_of_direction(r: Reader, symbol: str, step: Step) -> NoteQuantity:
     return _arm_of(r, symbol, abs(float((np.conj(at - about) * along).imag)), step.args[2])
 
 
-def _of_group(name: str, links: Iterable[str]) -> bool:
+def is_of_group(name: str, links: Iterable[str]) -> bool:
+    """Whether an arm, named after its force as h21 or h2,10, is that of a force at one of the links."""
     index = name[1:]
     return not set(index.split(",") if "," in index else index).isdisjoint(links)
 
@@ -303,12 +304,8 @@ def _force_plan(r: Reader, fp: Any) -> dict[str, Any]:
         mm, plain = float(scale.mm(size)), symbol.replace(BAR, "")
         force = next((s for s in fp.plan if s.name == _bared(plain)), head)
         if sought:
-            q = [
-                r.measured(f"|{tail.name}–{head.name}|", mm, "mm", force),
-                NoteQuantity("μ_{F}", scale.mu, "N/mm", f"scales.{fp.plan.name}"),
-            ]
-            tree: Any = expression.Argument(0) * expression.Argument(1)
-            results.append({"result": r.written(plain, tree, q, r.measured("", size, "N", force))})
+            mu, of = NoteQuantity("μ_{F}", scale.mu, "N/mm", step=f"scales.{fp.plan.name}"), r.measured("", size, "N", force)
+            results.append({"result": r.by_segment(plain, f"|{tail.name}–{head.name}|", scale, mu, of, force)})
         elif size and mm < SEEN:
             tiny.append((lettered(plain),))
         elif size:
@@ -339,7 +336,7 @@ def _crank(r: Reader) -> list[dict[str, Any]]:
 def _lever(r: Reader) -> dict[str, Any]:
     """Zhukovsky's lever: arms in mm, the balancing force or moment."""
     study, scale = r.project.study, r.scales.get("lever")
-    lever, crank = study.lever, study.mechanism.crank
+    lever = study.lever
     if lever.balancing is None or scale is None:
         return {}
     own = lever.hung[-1]
@@ -373,11 +370,10 @@ def _lever(r: Reader) -> dict[str, Any]:
     }
     if lever.line is not None:
         return found
-    length = NoteQuantity(f"l_{{{crank.pivot}{crank.pin}}}", float(crank.length), "m", r.origin(crank.length, "crank.length"))
     at_pin = r.measured(name, abs(force), "N", own.force)
     return found | {
         "letters": {bare(name): r.words["loads"]["at_pin"]},
-        "lever_moment": r.checked(driven, lambda f, length: f * length, [at_pin, length], lever.balancing),
+        "lever_moment": r.checked(driven, lambda f, length: f * length, [at_pin, r.crank_length], lever.balancing),
     }
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -86,25 +86,24 @@ def _input(r: Reader) -> dict[str, Any]:
     study = r.project.study
     crank, drive = study.mechanism.crank, study.mechanism.drive
     q = r.quantity(study.velocities.omega[crank.link], f"ω_{{{crank.link}}}")
-    omega = NoteQuantity(q.symbol, abs(q.value), q.unit, q.step, q.position)
+    omega = replace(q, value=abs(q.value))
     found: dict[str, Any] = {"omega1": r.number(omega.value, omega.unit, omega.step, omega.position), "pin": lettered(crank.pin)}
     if drive is not None:
         return found | {"input": drive.link, "input_speed": r.number(float(drive.speed), "m/s", "input.speed")}
-    length = NoteQuantity(f"l_{{{crank.pivot}{crank.pin}}}", float(crank.length), "m", r.origin(crank.length, "crank.length"))
     pin, acceleration = study.velocities.points[crank.pin], study.accelerations.points[crank.pin]
     found |= {
         "omega": r.of_turns("crank.speed", "n_1", omega),
-        "pin_velocity": r.checked(f"V_{{{crank.pin}}}", lambda w, length: w * length, [omega, length], pin),
+        "pin_velocity": r.checked(f"V_{{{crank.pin}}}", lambda w, length: w * length, [omega, r.crank_length], pin),
     }
     if "velocities" in r.scales:
         scale, size = r.scales["velocities"], abs(value_at(pin, r.k))
         of = r.measured(f"V_{{{crank.pin}}}", size, "m/s", pin)
         drawn = r.measured(f"p{crank.pin.lower()}", float(scale.mm(size)), "mm", pin)
         tree: Any = expression.Argument(0) / expression.Argument(1)
-        found["mu_V"] = r.written("μ_{V}", tree, [of, drawn], NoteQuantity("", scale.mu, "(m/s)/mm", "scales.mu_V"))
+        found["mu_V"] = r.written("μ_{V}", tree, [of, drawn], NoteQuantity("", scale.mu, "(m/s)/mm", step="scales.mu_V"))
     if study.running is None and not value_at(study.accelerations.epsilon[crank.link], r.k):
         found["pin_acceleration"] = r.checked(
-            f"a_{{{crank.pin}}}^{{n}}", lambda w, length: w * w * length, [omega, length], acceleration
+            f"a_{{{crank.pin}}}^{{n}}", lambda w, length: w * w * length, [omega, r.crank_length], acceleration
         )
     return found
 
@@ -207,18 +206,15 @@ def _triads(r: Reader) -> Iterator[dict[str, Any]]:
     for nth, g in enumerate(triads(r.project), 1):
         special, plan = pos.special[g.kind.about(g)], pos.false[g.name]
         first = tuple(step.name for step in g.false_points(plan)[0])
+        later = [step for step in plan if not step.name.endswith(first)]
         yield {
             "links": g.lettered, "base": g.links[0], "first": g.legs[0].link, "third": g.legs[2].link,
             "corner": lettered(g.legs[2].corner), "slider": bool(g.legs[2].guide), "nth": str(nth),
-            "false_steps": r.sentences(plan, _all_but(first)),
+            "false_steps": r.sentences(plan, later.__contains__),
             "special": lettered(special.name), "one": special.pair[0].link, "other": special.pair[1].link,
             "last": special.third.link, "last_corner": lettered(special.third.at),
             "false": r.pictures.figures(plan.name) or r.pictures.figures("false_positions.group"),
         }  # fmt: skip
-
-
-def _all_but(ends: tuple[str, ...]) -> Callable[[Step], bool]:
-    return lambda step: not step.name.endswith(ends)
 
 
 def _path(plan: Plan, pole: str, name: str) -> list[str] | None:
@@ -296,11 +292,9 @@ def _size_by_segment(r: Reader, plan: Plan) -> ShownFormula | None:
     s = next(found, None)
     if scale is None or s is None:
         return None
-    size = _size(r, plan, s)
-    mm = r.measured(f"{s.tail.name}{named(s.head.name)}", float(scale.mm(size)), "mm", s.head)
-    mu = NoteQuantity(scale.symbol, scale.mu, scale.unit, f"scales.{scale.symbol}")
-    tree: Any = expression.Argument(0) * expression.Argument(1)
-    return r.written(s.symbol.replace(BAR, ""), tree, [mm, mu], r.measured("", size, plan.unit, s.head))
+    size = r.measured("", _size(r, plan, s), plan.unit, s.head)
+    mu = NoteQuantity(scale.symbol, scale.mu, scale.unit, step=f"scales.{scale.symbol}")
+    return r.by_segment(s.symbol.replace(BAR, ""), f"{s.tail.name}{named(s.head.name)}", scale, mu, size, s.head)
 
 
 def _angular(r: Reader, of: Any) -> Iterator[dict[str, Any]]:

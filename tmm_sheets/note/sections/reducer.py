@@ -48,8 +48,9 @@ def _speed(r: Reader, key: str) -> ShownFormula | None:
     value = getattr(r.project.variant.reducer, key)
     if value is None:
         return None
-    letter = r.words["symbols"][f"reducer.{key}"]
-    return r.of_turns(f"reducer.{key}", letter.replace("ω", "n"), NoteQuantity(letter, float(value), "rad/s", f"reducer.{key}"))
+    path = f"reducer.{key}"
+    letter = r.words["symbols"][path]
+    return r.of_turns(path, letter.replace("ω", "n"), NoteQuantity(letter, float(value), "rad/s", step=path))
 
 
 def _sets(r: Reader) -> Rows:

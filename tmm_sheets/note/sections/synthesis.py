@@ -53,8 +53,8 @@ def _strokes(r: Reader, strokes: Any) -> dict[str, Any]:
         "K": r.written(
             "K",
             expression.Operation("/", (a, expression.Operation("-", (expression.Constant(360.0), a)))),
-            [NoteQuantity("φ_{рх}", degrees(turn), "deg", "dead-positions")],
-            NoteQuantity("", ratio, "", "dead-positions"),
+            [NoteQuantity("φ_{рх}", degrees(turn), "deg", step="dead-positions")],
+            NoteQuantity("", ratio, "", step="dead-positions"),
         ),
         "ratio": r.number(ratio, "", "dead-positions"),
         "faster": r.number(1 / ratio, "", "dead-positions") if ratio < 1 else None,
@@ -70,8 +70,8 @@ def _strokes(r: Reader, strokes: Any) -> dict[str, Any]:
             "theta": r.written(
                 "θ",
                 expression.Constant(180.0) * (a - 1) / (a + 1),
-                [NoteQuantity("K", asked, "", "cycle.coefficient")],
-                NoteQuantity("", 180 * (asked - 1) / (asked + 1), "deg", "cycle.coefficient"),
+                [NoteQuantity("K", asked, "", step="cycle.coefficient")],
+                NoteQuantity("", 180 * (asked - 1) / (asked + 1), "deg", step="cycle.coefficient"),
             ),
         }
     return found

@@ -44,7 +44,8 @@ def fields(r: Reader) -> dict[str, Any]:
 def _data(r: Reader) -> Iterator[Row | None]:
     """Rows of what ``[data]`` has words for, as the project file writes it, or as it goes without saying."""
     own = {q.step: q.symbol for q in r.givens()}
-    found = {_dotted(path): match for path, match in synthesis_refs.uses(tomllib.loads(r.project.variant.text))}
+    uses = synthesis_refs.uses(tomllib.loads(r.project.variant.text))
+    found = {"".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in path).lstrip("."): match for path, match in uses}
     taken = {getattr(a, "name", "") for step in r.book.steps.values() for a in step.args}
     told: set[str] = set()
     for key, (symbol, meaning) in r.words["data"].items():
@@ -156,10 +157,6 @@ def _below(data: Any, path: list[str], before: str, name: str, item: Item) -> It
             yield from _below(inner, rest, f"{before}.{k}", k.lstrip("z"), item)
     elif isinstance(data, dict) and key in data:
         yield from _below(data[key], rest, f"{before}.{key}".lstrip("."), name, data if not rest else item)
-
-
-def _dotted(path: tuple[str | int, ...]) -> str:
-    return "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in path).lstrip(".")
 
 
 # --- the diagrams of the loads

@@ -34,7 +34,7 @@ def fields(r: Reader) -> dict[str, Any]:
         one, two = (r.quantity(step, unit="rpm") for step in (plan[f"n{driving[0]}"], driven[-1]))
         ratio = expression.Operation("/", (expression.Argument(0), expression.Argument(1)))
         name = f"i_{{{driving[0]},{driven[-1].name[1:]}}}"
-        found["ratio"] = r.written(name, ratio, [one, two], NoteQuantity("", one.value / two.value, "", one.step))
+        found["ratio"] = r.written(name, ratio, [one, two], NoteQuantity("", one.value / two.value, "", step=one.step))
     return found
 
 
