@@ -30,9 +30,10 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.forces import GearForce, InputForce
     from tmm_sheets.methods.linkage.friction import Coefficients
     from tmm_sheets.methods.linkage.loads import Loads
-    from tmm_sheets.methods.linkage.motion import Motion
-    from tmm_sheets.methods.linkage.study import Study
+    from tmm_sheets.methods.linkage.positions import Passages
+    from tmm_sheets.methods.linkage.study import Motion, Study
     from tmm_sheets.methods.linkage.synthesis import Synthesis
+    from tmm_sheets.task.assembly import Givens
     from tmm_sheets.task.units import Printed
 
 
@@ -193,14 +194,13 @@ class Project:
     def driver(self) -> GearForce | InputForce | None:
         """Gear force on the crank shaft, or force on an input; None when a pure moment balances the crank."""
         from tmm_sheets.methods.linkage.forces import GearForce, InputForce
-        from tmm_sheets.task.assembly import Givens
 
         if self.mechanism.drive is not None:
             return InputForce(self.balancing, self.mechanism.drive)
         b: Any = self.variant.balancing
         if b is None or b.kind == "moment":
             return None
-        of = Givens(self.variant)
+        of = self._givens
         return GearForce.of_gear(b.name, of.number(b.module, "m", "m", "balancing", "module"),
                                  of.number(b.teeth, "z_1", "", "balancing", "teeth"),
                                  of.number(b.pressure_angle, "α", "rad", "balancing", "pressure_angle"),
@@ -213,9 +213,8 @@ class Project:
         if f is None:
             return None
         from tmm_sheets.methods.linkage.friction import Coefficients
-        from tmm_sheets.task.assembly import Givens
 
-        of = Givens(self.variant)
+        of = self._givens
         return Coefficients(of.number(f.turning, "f_{t}", "", "friction", "turning"),
                             of.number(f.sliding, "f_{s}", "", "friction", "sliding"),
                             {name: of.number(r, f"r_{{{name}}}", "m", "friction", "radii", name) for name, r in f.radii.items()})
@@ -223,9 +222,13 @@ class Project:
     @property
     def gravity(self) -> float:
         """Free fall, m/s2."""
+        return self._givens.number(self.variant.forces.gravity, "g", "m/s2", "forces", "gravity")
+
+    @property
+    def _givens(self) -> Givens:
         from tmm_sheets.task.assembly import Givens
 
-        return Givens(self.variant).number(self.variant.forces.gravity, "g", "m/s2", "forces", "gravity")
+        return Givens(self.variant)
 
     @cached_property
     def study(self) -> Study:
@@ -253,7 +256,7 @@ class Project:
     @cached_property
     def motion(self) -> Motion:
         """Motion of the outputs for the kinematic diagrams."""
-        from tmm_sheets.methods.linkage.motion import Motion
+        from tmm_sheets.methods.linkage.study import Motion
 
         return Motion(self.study, self.study_at)
 
@@ -281,28 +284,28 @@ class Project:
         """
         told = self._section("cycle").force_position
         if told is None and self.variant.loaded:
-            from tmm_sheets.methods.linkage.positions import passages
-
-            return int(passages(self.mechanism).within(self.cycle.phi).argmin())
+            return int(self._change_points.within(self.cycle.phi).argmin())
         return self.cycle.index(told or self.cycle.labels[0], "[cycle] force_position: ")
+
+    @property
+    def _change_points(self) -> Passages:
+        from tmm_sheets.methods.linkage.positions import passages
+
+        return passages(self.mechanism)
 
     @property
     def turning_back(self) -> dict[str, list[float]]:
         """Crank angles, degrees from 0 to 360, at which links of groups turn back at once, by the groups' names."""
         import numpy as np
 
-        from tmm_sheets.methods.linkage.positions import passages
-
-        found = {g.name: passages(self.mechanism).angles(g) for g in self.mechanism.groups if not g.follow}
+        found = {g.name: self._change_points.angles(g) for g in self.mechanism.groups if not g.follow}
         return {name: sorted((np.degrees(angles).round(1) % 360).tolist()) for name, angles in found.items() if angles}
 
     @cached_property
     def unbounded(self) -> bool:
         """True where reactions grow beyond all bounds at the position of the force analysis."""
-        from tmm_sheets.methods.linkage.positions import passages
-
         k = self.force_index
-        return bool(passages(self.mechanism).within(self.cycle.phi)[k]) and not bool(self.study.forces.bounded()[k])
+        return bool(self._change_points.within(self.cycle.phi)[k]) and not bool(self.study.forces.bounded()[k])
 
     def check_forces(self) -> None:
         """Look whether the position of the force analysis has reactions.

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from tests.construction.gradients import gradient
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets import catalogue
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.error import Errors, errors
+from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Plan
 from tmm_sheets.mechanism.groups import RRP
 from tmm_sheets.mechanism.model import Crank, Guide, StructuralGroup
@@ -71,8 +72,8 @@ def test_errors_in_common_cancel():
     assert found.in_mm(c) == pytest.approx(np.full(5, PENCIL * 3**0.5))
     assert found.between(b, c) / 0.002 == pytest.approx(np.full(5, PENCIL))
     assert found.between(a, c) / 0.002 == pytest.approx(np.full(5, PENCIL * 2**0.5))
-    assert found.sensitivity(c, a) == pytest.approx(np.broadcast_to(np.eye(2), (5, 2, 2)), abs=1e-9)
-    assert not found.sensitivity(a, c).any()
+    assert gradient(found, c, a) == pytest.approx(np.broadcast_to(np.eye(2), (5, 2, 2)), abs=1e-9)
+    assert not gradient(found, a, c).any()
 
 
 def slider_crank(phi):
@@ -123,7 +124,7 @@ def test_drawn_with_a_mistake():
     assert abs(value(vel.points["B"])[1]) == pytest.approx(30.0)
     assert value(vel.points["B"])[1] == pytest.approx(30j * moved / abs(moved))
     small = found.displaced(b, 1, 1e-7)(vel.points["C"])[1] - vel.points["C"].value[1]
-    assert small / 1e-7 == pytest.approx(complex(*found.sensitivity(vel.points["C"], b)[1, :, 0]), rel=1e-3)
+    assert small / 1e-7 == pytest.approx(complex(*gradient(found, vel.points["C"], b)[1, :, 0]), rel=1e-3)
 
 
 def test_error_of_a_sum():
@@ -184,7 +185,7 @@ def test_chords_add_up():
     plan = Plan("work", "", "mm")
     n, width, pole = 12, 20.0, 40.0
     ends = integrate(plan, "", width * np.arange(n + 1), np.zeros(n), pole)
-    found = errors(plan, 1.0, PENCIL)
+    found = Errors([(plan, 1.0)], PENCIL).of_plan(plan)
     ray = (width / pole) ** 2
     for k, end in enumerate(ends):
         assert found[end.name] == pytest.approx(PENCIL * np.sqrt(1 + k + 2 * k * ray + k**2 * ray), rel=1e-4)

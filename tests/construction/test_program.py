@@ -13,7 +13,7 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import Operation, primitive
 from tmm_sheets.construction.function import NARROW, Function, Replay, fill
-from tmm_sheets.construction.program import GIVEN, NUMBER, PACKED, REAL, Language, program, written
+from tmm_sheets.construction.program import GIVEN, NUMBER, REAL, Language, program, written
 from tmm_sheets.construction.step import Given, GivenNumber, Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import slotted
@@ -59,7 +59,7 @@ def test_every_rule_of_a_linkage_is_a_formula_or_a_primitive():
 
 
 def test_every_operation_is_known():
-    known = {*REAL, *PACKED, "conj", "abs", "re", "im", "square"}
+    known = {*REAL, "complex", "conj", "abs", "re", "im", "square"}
     trees = [tree for r in RULES for n in range(9) if (tree := r.tree(n)) is not None]
     found = {o.name for tree in trees for o in operations(tree) if o.function is None}
     assert found <= known

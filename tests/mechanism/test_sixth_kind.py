@@ -12,6 +12,7 @@ import pytest
 
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.step import Rule
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.lab.stress.invariants import State
 from tmm_sheets.mechanism.groups import RRP
@@ -30,6 +31,7 @@ from tmm_sheets.sheets.linkage import link_marks
 REACH, AHEAD = 0.12, 0.7
 ROD, ROCKER, FRAME, SECOND, AT = 0.28, 0.24, 0.3, 0.35, 0.2
 OMEGA, EPSILON, GRAVITY = 10.0, 30.0, 9.81
+PULL = Rule("given pull", lambda f: f, ("force",), "force", "", unit="N")
 PHI = np.array([-2.9, -1.1, 0.4, 1.3, 2.6])
 
 
@@ -109,7 +111,7 @@ def test_balancing_moment_makes_up_for_the_power_of_all_forces(plans):
     pos, _, acc = plans
     m = machine()
     pull = 200.0 + 50.0j
-    loads, couples, _ = external_loads(pos, acc, GRAVITY, [("Q", "5", "F", np.full(PHI.shape, pull))])
+    loads, couples, _ = external_loads(pos, acc, GRAVITY, [("5", "F", lambda plan: plan.add("Q", PULL, np.full(PHI.shape, pull)))])
     forces = kinetostatics(pos, acc, loads, couples, None)
     power = np.zeros(PHI.shape)
     with mpmath.workdps(30):
@@ -126,7 +128,7 @@ def test_balancing_moment_makes_up_for_the_power_of_all_forces(plans):
 
 def test_every_link_of_the_group_is_in_equilibrium(plans):
     pos, _, acc = plans
-    loads, couples, _ = external_loads(pos, acc, GRAVITY, ())
+    loads, couples, _ = external_loads(pos, acc, GRAVITY)
     f = {name: step.value for name, step in kinetostatics(pos, acc, loads, couples, None).reactions.items()}
     own = {link: sum(load.vector.value for load in loads[link]) for link in ("2", "3")}
     assert np.abs(f["F21"] + f["F23"] + f["F24"] + own["2"]).max() < 1e-9 * np.abs(f["F21"]).max()

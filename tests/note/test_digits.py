@@ -9,7 +9,7 @@ import pytest
 from tests.few import few
 from tests.note.printed_formulas import equalities, line_of
 from tmm_sheets.construction import expression as e
-from tmm_sheets.construction.digits import read, shown
+from tmm_sheets.construction.equation import read, shown
 from tmm_sheets.note.alphabets import equation
 from tmm_sheets.note.reader import NoteQuantity, Reader
 from tmm_sheets.numbers import degrees_and_minutes, rounded_angle

@@ -144,20 +144,6 @@ class Errors:
         known = self._of(step)
         return np.ones(1, dtype=bool) if known is None else known.linear
 
-    def sensitivity(self, step: Step, source: Step, at: int | None = None) -> Matrices:
-        """Displacement of a step for a unit displacement of an earlier one, d(x, y)/d(x, y), shape (n, 2, 2) or (1, 2, 2).
-
-        Of a number the first row or column counts. Zero when the step does not depend on the other. ``at`` is the source's
-        position where the step took a single one from another plan.
-        """
-        known, number = self._of(step), self._numbers.get(id(source))
-        if at is not None and number is not None:
-            number = self._elsewhere.get((number, at), number)
-        if known is None or number is None or number not in known.sources:
-            return np.zeros((1, 2, 2))
-        i = 2 * int(np.searchsorted(known.sources, number))
-        return known.jacobian[:, :, i:i + 2]
-
     def of_sum(self, terms: Iterable[tuple[Step, int, complex]]) -> tuple[float, list[tuple[Step, int, complex]]]:
         """Error of a quantity that grows by the sum of Re(conj(g) d) when the steps are displaced by d, and by what it does so.
 
@@ -443,11 +429,6 @@ class Errors:
             if both_given or id(first) in self._links.get(id(a), {}) or id(a) in self._links.get(id(first), {}):
                 found[i] = foreign[0], np.abs(a.value - first.value)
         return found
-
-
-def errors(plan: Plan, mu: float, pencil: float = PENCIL) -> Mapping[str, Floats]:
-    """Error of each point and length of one plan drawn at the scale factor ``mu``, mm, by the names of the steps."""
-    return Errors([(plan, mu)], pencil).of_plan(plan)
 
 
 def _kind(step: Step, i: int, a: Any) -> str:

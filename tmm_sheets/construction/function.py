@@ -15,6 +15,7 @@ import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property, lru_cache
 from math import isfinite, isnan
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -34,7 +35,7 @@ from tmm_sheets.construction.program import (
     ufunc,
     written,
 )
-from tmm_sheets.construction.step import FoundNumber, Step, ordered, parents, value_of
+from tmm_sheets.construction.step import FoundNumber, SearchCount, Step, ordered, parents, value_of
 
 _OTHERS = {"complex": "packed({0}, {1})", "re": "{0}.real", "im": "{0}.imag"}
 
@@ -366,10 +367,12 @@ class Replay:
     def __len__(self) -> int:
         return len(self._moves)
 
-    def __call__(self, inputs: Sequence[Any]) -> list[Any]:
-        """Values of the wanted steps for the rows, and the chosen numbers, in their order."""
-        values = [*inputs]
+    def __call__(self, inputs: Sequence[Any], search: SearchCount | None = None) -> list[Any]:
+        """Values of the wanted steps for the rows, and the chosen numbers, in their order; a ``search`` counts the moves."""
+        values, begin = [*inputs], perf_counter()
         with np.errstate(all="ignore"):
             for compute, slots in self._moves:
                 values.append(compute(*(values[i] if i >= 0 else x for i, x in slots)))
+        if search is not None:
+            search.again(len(self), perf_counter() - begin)
         return [values[i] if i >= 0 else x for i, x in self._wanted]

@@ -11,8 +11,3 @@ def pair_index(j: str, k: str) -> str:
 def on_link(point: str, link: str) -> str:
     """The point of a link that coincides with ``point`` of another one: B3; B,10 where the link's name has two signs or more."""
     return f"{point}{link}" if len(link) == 1 else f"{point},{link}"
-
-
-def against(point: str, link: str) -> str:
-    """Index of the motion of a point against the point of ``link`` under it: BB3."""
-    return f"{point}{on_link(point, link)}"

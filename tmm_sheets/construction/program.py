@@ -30,8 +30,6 @@ GIVEN, NUMBER = "given", "number"
 REAL = ("+", "-", "*", "/", "^", "negative", "abs", "sqrt", "sin", "cos", "tan", "atan", "atan2", "asin", "acos", "exp", "log",
         "cbrt", "hypot", "sign", "maximum", "minimum")
 """Operations on real numbers that every language has to write."""
-PACKED = ("complex", "re", "im")
-"""A pair of real numbers as one value for a primitive, and its parts again."""
 
 
 @dataclass(frozen=True)

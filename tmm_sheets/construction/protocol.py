@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.equation import UNITS, Quantity, digits_for, of_step
+from tmm_sheets.construction.equation import POWERS, UNITS, Quantity, digits_for, of_step
 from tmm_sheets.construction.formula import letters_of
 from tmm_sheets.construction.rules import LINE_LINE, take
 from tmm_sheets.construction.step import Kind, Plan, Step, value_at, value_of
@@ -167,7 +167,6 @@ def sentence_of_any_angle(step: Step) -> str:
 _SECTIONS = {"rack": "gear",
              **dict.fromkeys(("drive", "rotor", "motor", "crank", "energy", "reduction"), "flywheel")}
 """Parts of the note whose letters those of other plans are, by the first word of a plan's name."""
-_POWERS = str.maketrans("0123456789−", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 def _of_formula(step: Step, k: int, to_mm: Callable[[float], float], unit: str, sizes: SortSizes) -> str:
@@ -189,7 +188,7 @@ def _of_formula(step: Step, k: int, to_mm: Callable[[float], float], unit: str, 
         said = f"{letter_of(step)} = {value} {tr(UNITS.get(step.rule.unit, step.rule.unit))}".rstrip()
     for name in {a.name for a in (*step.args, step) if isinstance(a, Step) and not a.symbol}:
         said = said.replace(letters_of(name), spoken(name))  # without markup as everywhere
-    said = re.sub(r"\^\{(−?\d+)\}", lambda m: m[1].translate(_POWERS), said)
+    said = re.sub(r"\^\{(−?\d+)\}", lambda m: m[1].translate(POWERS), said)
     said = re.sub(r"\^\{([^{}*]+/[^{}]+)\}", r"^(\1)", said)
     return _unmarked(said)
 

@@ -99,8 +99,6 @@ TANGENT = Rule(
 FOOT = Rule("foot of a perpendicular", ar.foot, ("point", "point", "direction"), "point",
             marked("From {0} drop the perpendicular to the line {2}: point {name}."),
             lambda a, v: (Helper("line", a[0], v),))
-DIFFERENCE = Rule("measure a vector",
-                  lambda p, q: q - p, ("point", "point"), "vector", marked("Measure the vector {0}{1}: {value}."))
 ARM = Rule("measure an arm", ar.arm, ("point", "point", "force"), "length",
            marked("Measure the arm of the force {2} about {0}: {value}."), lambda a, v: arm(*a))
 TURNED_BY = Rule("turn a direction", lambda u, angle: u * ar.unit(angle), ("direction", "angle"), "direction",

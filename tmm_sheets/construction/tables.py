@@ -1,8 +1,12 @@
-"""Plans by tables: of each step what it takes, the letter of what it gives, the rule, and a sentence if it is not the rule's."""
+"""Plans by tables: of each step what it takes, the letter of what it gives, the rule, and a sentence if it is not the rule's.
+
+And plans of an object that are made when somebody reads them.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import cached_property
 from typing import Any
 
 from tmm_sheets.construction.step import Plan, Rule, Step
@@ -38,3 +42,21 @@ def _taken(key: str, wheel: str, *there: Mapping[str, Any]) -> Any:
     name = key.rstrip("'")
     of = str(3 - int(wheel)) if wheel and name != key else wheel
     return next(found[own] for found in there for own in (f"{name}{of}", name) if own in found)
+
+
+def planned(name: str, title: str, unit: str = "", labels: str = "") -> Callable[[Callable[[Any, Plan], None]],
+                                                                                 cached_property[Plan]]:
+    """Decorator of a method that records steps on a plan: the attribute is that plan, made when it is first read.
+
+    Behind its ``name`` stands the object's ``where``, if it has one; ``labels`` is the attribute with the labels of the positions.
+    """
+    def of(recorded: Callable[[Any, Plan], None]) -> cached_property[Plan]:
+        def made(self: Any) -> Plan:
+            plan = Plan(name + getattr(self, "where", ""), tr(title), unit, getattr(self, labels) if labels else ("",))
+            recorded(self, plan)
+            return plan
+
+        made.__doc__ = recorded.__doc__
+        return cached_property(made)
+
+    return of

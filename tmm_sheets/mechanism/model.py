@@ -70,6 +70,12 @@ class Guide:
     direction: float
     towards: str | None = None
 
+    @property
+    def at(self) -> complex:
+        """The point of a fixed guide that is given, m."""
+        assert not isinstance(self.through, str)
+        return self.through
+
 
 @dataclass(frozen=True)
 class OuterReaction:
@@ -112,7 +118,8 @@ class GroupKind(ABC):
 
     ``number`` is the manual's, ``grade`` and ``order`` are its class and order; ``form`` is its pairs, outer, inner,
     outer, R turning, P sliding, looked up when it is said. ``orders`` are the same pairs as R and P, in every order the links can
-    be met in. Those of ``two_ways`` of assembly may come to change points, where one passes into the other.
+    be met in. Those of ``two_ways`` of assembly may come to change points, where one passes into the other. ``slotted``
+    tells what the second link is to the block of the first.
     """
 
     number: ClassVar[int]
@@ -121,6 +128,7 @@ class GroupKind(ABC):
     grade: ClassVar[int] = 2
     order: ClassVar[int] = 2
     two_ways: ClassVar[bool] = False
+    slotted: ClassVar[Literal["", "ram", "rocker"]] = ""
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other)
@@ -255,11 +263,11 @@ class GroupKind(ABC):
 
     def ram(self, g: StructuralGroup) -> str | None:
         """The guided link with a slot for the other's slider block."""
-        return None
+        return g.links[1] if self.slotted == "ram" else None
 
     def rocker(self, g: StructuralGroup) -> str | None:
         """The link that turns about the second outer hinge and guides the other's slider block."""
-        return None
+        return g.links[1] if self.slotted == "rocker" else None
 
 
 def lettered(links: Iterable[str]) -> str:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from itertools import combinations
 
 from tmm_sheets.mechanism.groups import KINDS, TRIAD
-from tmm_sheets.mechanism.groups.contexts import Leg
 from tmm_sheets.mechanism.groups.triad import TriadGroup
-from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup
+from tmm_sheets.mechanism.model import Leg, Mechanism, Pair, StructuralGroup
 
 
 def decompose(m: Mechanism) -> tuple[StructuralGroup, ...]:

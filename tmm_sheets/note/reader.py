@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction import expression, protocol
-from tmm_sheets.construction.digits import DIGITS, Digits, shown
-from tmm_sheets.construction.equation import Quantity, in_numbers, tree_of_step
+from tmm_sheets.construction.equation import DIGITS, Digits, Quantity, in_numbers, shown, tree_of_step
 from tmm_sheets.construction.formula import (
     Figures,
     FormulaRow,

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 from tmm_sheets.construction.step import FoundNumber, Given, GivenNumber, GivenPoint, Plan, Rule
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import KINDS, TRIAD
-from tmm_sheets.mechanism.groups.contexts import Leg
 from tmm_sheets.mechanism.groups.triad import TriadGroup
-from tmm_sheets.mechanism.model import Crank, Drive, Guide, Link, LinkPoint, Mechanism, StructuralGroup
+from tmm_sheets.mechanism.model import Crank, Drive, Guide, Leg, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import (
     DIAGRAM,

@@ -19,7 +19,6 @@ def test_done_again_is_made_anew(name):
         for side in (-1, 0, 1):  # loads jump at the breaks
             np.testing.assert_array_equal(reduced.moment(phi, side), Reduction(reduced, TRIED, phi).moment(side).value)
         np.testing.assert_array_equal(reduced.inertia(phi), Reduction(reduced, TRIED, phi).inertia.value)
-        np.testing.assert_array_equal(reduced.inertia_slope(phi), Reduction(reduced, TRIED, phi).slope.value)
 
 
 def test_no_load_is_none_in_the_shape_that_is_asked():

@@ -269,7 +269,7 @@ def balance(m, phi, gravity=9.81):
     pos = position_plan(m, phi)
     vel = velocity_plan(pos)
     acc = acceleration_plan(vel)
-    loads, couples, _ = external_loads(pos, acc, gravity, ())
+    loads, couples, _ = external_loads(pos, acc, gravity)
     found = kinetostatics(pos, acc, loads, couples, None, limits=limits_of_forces(pos, acc, loads, couples, None))
     by_lever = lever(vel, [load for of in loads.values() for load in of], couples, None).balancing
     return (*(np.broadcast_to(s.value, phi.shape) for s in (found.balancing, by_lever)),

@@ -258,7 +258,7 @@ OTHER_SIGN: Mapping[Rule, tuple[Kind, str]] = {
     velocities.ANGULAR_VELOCITY: ("sense", "turning"), accelerations.ANGULAR_ACCELERATION: ("sense", "turning"),
     velocities.CRANK_VELOCITY: ("sense", "crank velocity"),
     forces.INERTIA: ("inertia", "inertia"), forces.COUPLE: ("inertia", "inertia moment"),
-    forces.WEIGHT: ("force", "force"), forces.GIVEN_FORCE: ("force", "force"), loads.FORCE: ("force", "force"),
+    forces.WEIGHT: ("force", "force"), loads.FORCE: ("force", "force"),
     forces.TANGENTIAL: ("force", "component"),
 }
 REACTIONS = (forces.OPPOSITE,)

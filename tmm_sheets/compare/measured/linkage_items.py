@@ -44,7 +44,7 @@ from tmm_sheets.construction.rules import LINE_LINE
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.methods.linkage import accelerations
-from tmm_sheets.methods.linkage.forces import GIVEN_FORCE, MOMENTS, OPPOSITE, TANGENTIAL, WEIGHT
+from tmm_sheets.methods.linkage.forces import MOMENTS, OPPOSITE, TANGENTIAL, WEIGHT
 from tmm_sheets.methods.linkage.velocities import SAME, SIMILAR
 from tmm_sheets.words import tell, tr
 
@@ -334,7 +334,7 @@ def _arms(project: Project, found: Measurables, k: int, label: str) -> None:
             moment = float(ar.moment(*(complex(value_at(a, k)) for a in (about, at, force))))
             if moment:
                 known = force.args[0] if force.rule is OPPOSITE else force
-                drawn = known.rule in (WEIGHT, GIVEN_FORCE)
+                drawn = known.rule is WEIGHT
                 moments[f"arms/{label}/{name}", *(() if drawn else (f"{RESULTS}/{label}/{known.name}",))] = moment
         _from_moments(project, found, step, moments)
 

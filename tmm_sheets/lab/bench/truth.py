@@ -107,8 +107,8 @@ def _place(m: Mechanism, s: TrueState, g: StructuralGroup) -> None:
         s.points[str(g.inner)], s.links[i], s.links[j] = _meet(p, u, q, v), u, v
     else:
         (p,), ((through, u),) = outer, guides
-        s.points[str(g.inner)] = _meet(p, u * mp.expj(g.slot), through, u)
-        s.links[i] = s.links[j] = u
+        s.links[i], s.links[j] = u * mp.expj(g.slot), u
+        s.points[str(g.inner)] = _meet(p, s.links[i], through, u)
 
 
 def motion(m: Mechanism, phi: float) -> TrueMotion:
@@ -131,21 +131,9 @@ def motion(m: Mechanism, phi: float) -> TrueMotion:
 
 
 def _axes(m: Mechanism, s: TrueState) -> dict[tuple[str, str], Any]:
-    """Direction of each sliding pair by its two links."""
-    found: dict[tuple[str, str], Any] = {}
-    for g in m.groups:
-        i, j = g.links
-        guides = [m.guides[name] for name in g.guides]
-        along = [_guide(m, s, guide)[1] for guide in guides]
-        if g.kind.number == 2:
-            found[j, guides[0].link] = along[0]
-        elif g.kind.number == 3:
-            found[i, j] = s.links[i]
-        elif g.kind.number == 4:
-            found[guides[0].link, i], found[j, guides[1].link] = along
-        elif g.kind.number == 5:
-            found[i, j], found[j, guides[0].link] = along[0] * mp.expj(g.slot), along[0]
-    return found
+    """Direction of each sliding pair by its two links: that of the first link of its group in it."""
+    return {pair.links: s.links[next(link for link in g.links if link in pair.links)]
+            for g in m.groups for pair in g.kind.pairs(m, g) if pair.motion == "translation"}
 
 
 def _cross(u: Any, v: Any) -> Any:

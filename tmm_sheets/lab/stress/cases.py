@@ -85,19 +85,18 @@ class Worst:
             self.value, self.case, self.scene = value, case, scene
 
 
-Make = Callable[[Mechanism, Any], State]
-"""How the plans of a mechanism are evaluated at some crank angles."""
+Make = Callable[..., State]
+"""How the plans of a mechanism are evaluated at some crank angles, with the gravity, m/s2."""
 Scene = Callable[[np.random.Generator, Make], Iterator[Residual]]
 
 
-def _everything(m: Mechanism, phi: Any, gravity: float, make: Make) -> Iterator[Residual]:
-    s = make(m, phi)
-    yield from geometry(s)
-    yield from rigidity(s)
-    yield from alike(s)
-    yield from assembled(s)
-    yield from derivatives(s, gravity)
-    yield from statics(s, gravity)
+EVERY = (geometry, rigidity, alike, assembled, derivatives, statics)
+
+
+def _checked(s: State, *checks: Callable[[State], Iterator[Residual]]) -> Iterator[Residual]:
+    """Residuals of some invariants of a state, of all unless told."""
+    for check in checks or EVERY:
+        yield from check(s)
 
 
 def _gravity(rng: np.random.Generator, m: Mechanism) -> float:
@@ -115,7 +114,7 @@ def _chain(hard: str, spread: float = 0.3, empty: float = 0.2) -> Scene:
     def scene(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
         m, phi = chain(rng, hard)
         m = loaded(rng, m, spread, empty)
-        yield from _everything(m, _around(rng, phi), _gravity(rng, m), make)
+        yield from _checked(make(m, _around(rng, phi), _gravity(rng, m)))
 
     return scene
 
@@ -124,10 +123,8 @@ def _turns(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     m, phi = chain(rng)
     m = loaded(rng, m)
     turns = 2 * pi * rng.integers(-(10**6), 10**6, ANGLES)
-    s = make(m, phi + turns + rng.uniform(-1e-3, 1e-3, ANGLES))
-    for invariants in (geometry, rigidity, assembled):
-        yield from invariants(s)
-    yield from statics(s, _gravity(rng, m))
+    s = make(m, phi + turns + rng.uniform(-1e-3, 1e-3, ANGLES), _gravity(rng, m))
+    yield from _checked(s, geometry, rigidity, assembled, statics)
 
 
 def _limited(rng: np.random.Generator) -> tuple[Mechanism, float]:
@@ -175,9 +172,7 @@ def _dead(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     # From 1e-15 rad on: the double next to the limit may be nearer to it than two doubles can tell.
     for name, residual in _compared(s, phi):
         yield name, residual[1:]
-    yield from geometry(s)
-    yield from rigidity(s)
-    yield from statics(s, 0.0)
+    yield from _checked(s, geometry, rigidity, statics)
 
 
 def _change_points(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
@@ -190,9 +185,7 @@ def _change_points(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     rod *= 1 + float(rng.choice((0.0, 0.0, 1e-13, -1e-13, 1e-9)))
     m = with_rocker(frame, (rod, rocker), side=rng.choice((1, -1)), crank=replace(crank_of(rng, size), length=crank))
     near = 10.0 ** rng.uniform(-15, -1, ANGLES // 2)
-    s = make(m, np.concatenate((near, pi - near, [0.0, pi])))
-    yield from geometry(s)
-    yield from assembled(s)
+    yield from _checked(make(m, np.concatenate((near, pi - near, [0.0, pi]))), geometry, assembled)
 
 
 def _compared(s: State, phi: Any, where: str = "at a dead position") -> Iterator[Residual]:
@@ -225,7 +218,7 @@ def _stroke_ends(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     still = np.abs(s.v["C"][[0, len(gaps)]]) / (crank.speed * r)
     # The angle of the end is a double, the way beside it is of the second order.
     yield "standstill at the ends of the stroke", still
-    yield from _everything(loaded(rng, m), phi, _gravity(rng, m), make)
+    yield from _checked(make(loaded(rng, m), phi, _gravity(rng, m)))
 
 
 def _tangent(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
@@ -240,9 +233,7 @@ def _tangent(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     top = turn + (-pi / 2 if e > 0 else pi / 2)
     phi = np.concatenate((top + near, top - near, [top]))
     s = make(m, phi)
-    yield from geometry(s)
-    yield from rigidity(s)
-    yield from assembled(s)
+    yield from _checked(s, geometry, rigidity, assembled)
     # A rod longer by half a unit in its last place lifts the half-chord by that over the half-chord: data, not arithmetic.
     for name, residual in _compared(s, phi[:-1], "at a change point"):
         yield name, residual / s.condition[:-1]
@@ -273,7 +264,7 @@ def _mirror(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     mass = sum(link.mass + link.inertia / s.reach**2 for link in m.links.values())
     total = mass * s.sharpest * s.fastest / m.crank.speed
     scale = total * grown**2
-    yield "picture in a mirror", np.abs(balancing(s, 0.0) + balancing(other, 0.0)) / np.where(scale == 0, 1.0, scale)
+    yield "picture in a mirror", np.abs(balancing(s) + balancing(other)) / np.where(scale == 0, 1.0, scale)
 def _triads(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     """A group of class III, now and then before or behind another group."""
     kinds = (TRIAD.number,)
@@ -281,7 +272,7 @@ def _triads(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     m, phi = chain(rng, kinds=kinds if not other else (other, *kinds) if rng.random() < 0.3 else (*kinds, other))
     m = loaded(rng, m)
     try:
-        yield from _everything(m, _around(rng, phi), _gravity(rng, m), make)
+        yield from _checked(make(m, _around(rng, phi), _gravity(rng, m)))
     except CannotBuild:
         return  # after a turn it is another way of assembly: refused
 

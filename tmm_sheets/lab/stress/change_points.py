@@ -117,8 +117,7 @@ def _line(m: Mechanism, b: Exact) -> Exact | None:
     """Where an arc about the pin meets a guide."""
     g = m.groups[0]
     guide = m.guides[g.guides[0]]
-    assert not isinstance(guide.through, str)
-    u, p = Exact(*direction(guide.direction)[1:]), exact(guide.through)
+    u, p = Exact(*direction(guide.direction)[1:]), exact(guide.at)
     seen = (b - p) * u.conjugate()
     square = Decimal(g.lengths[0]) ** 2 - seen.y * seen.y
     return None if square < 0 else p + u * Exact(seen.x + Decimal(g.side) * square.sqrt())
@@ -129,7 +128,7 @@ COUNT = 6
 BORDER = 1e-15
 """How near an angle may be to where a change point ends, rad: the change point itself is known to its rounding."""
 SIDEWAYS = (0.0, pi / 2, pi, -pi / 2)
-Make = Callable[[Mechanism, Any], State]
+Make = Callable[..., State]
 """How the plans of a mechanism are evaluated."""
 Way = Callable[[Exact, Exact], Exact]
 """The hinge by the crank's pin and the other pivot, or the direction of the guide."""
@@ -246,12 +245,12 @@ def scene(name: str) -> Callable[[np.random.Generator, Make], Iterator[Residual]
             of = replace(of, m=replace(of.m, groups=(replace(g, side=of.side(g.at, way)),)))
         of = replace(of, m=loaded(rng, of.m, 0.3, 0.0))
         gravity = of.m.crank.speed**2 * of.m.crank.length * float(rng.uniform(0.0, 2.0))
-        yield from _passed(of, make(of.m, about(rng, of.angles)), gravity)
+        yield from _passed(of, make(of.m, about(rng, of.angles), gravity))
 
     return drawn
 
 
-def _passed(of: Passing, s: State, gravity: float) -> Iterator[Residual]:
+def _passed(of: Passing, s: State) -> Iterator[Residual]:
     """Velocity and acceleration of the hinge, and the moment on the crank, against what the formulas give."""
     phi, c = s.phi, of.m.crank
     first, second = np.array([[complex(x) for x in of.hinge(angle)[1:]] for angle in phi.tolist()]).T
@@ -268,16 +267,16 @@ def _passed(of: Passing, s: State, gravity: float) -> Iterator[Residual]:
         turning, growing = (cross(r, vectors[q] - vectors[p]) / np.abs(r) ** 2 for vectors in (at, beside))
         own = link.inertia * turning * growing
         if link.centre is not None:
-            lifted = link.mass * gravity * at[link.centre].imag
+            lifted = link.mass * s.gravity * at[link.centre].imag
             sped = link.mass * (at[link.centre] * np.conj(beside[link.centre])).real
             power, total = power + lifted + sped, total + np.abs(lifted) + np.abs(sped)
         power, total = power + own, total + np.abs(own)
-    by_plans, by_lever = by_plans_and_lever(s, gravity)
+    by_plans, by_lever = by_plans_and_lever(s)
     # Weights and inertia that the links have anyhow, in a motion like the crank's.
-    scale = total + pin * sum(link.mass * (gravity + c.speed**2 * c.length) for link in of.m.links.values())
+    scale = total + pin * sum(link.mass * (s.gravity + c.speed**2 * c.length) for link in of.m.links.values())
     yield "moment through a change point", _told(by_lever * w - power) / scale
     yield "moment through a change point", _told(by_plans * w - power) / scale
-    yield from statics(s, gravity)
+    yield from statics(s)
 
 
 def _told(difference: Any) -> Any:

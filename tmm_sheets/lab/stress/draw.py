@@ -6,16 +6,16 @@ Everything comes from one generator of random numbers, so that a case is known b
 from __future__ import annotations
 
 from cmath import rect
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from math import pi
 from typing import Any
 
 import numpy as np
 
-from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, TRIAD
-from tmm_sheets.mechanism.groups.contexts import Leg
+from tmm_sheets.mechanism.groups import KINDS, PRP, RPP, RPR, RRP, RRR, TRIAD
 from tmm_sheets.mechanism.groups.triad import TriadGroup
-from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
+from tmm_sheets.mechanism.model import Crank, Guide, Leg, Link, LinkPoint, Mechanism, StructuralGroup
 
 SURE = 0.25
 """Least sine of the deciding angle of a group that is not meant to be near its limit."""
@@ -250,10 +250,6 @@ def rpp(d: Draft, links: tuple[str, str]) -> None:
     want(d.hard == "narrow" or abs(c - d.at[p]) < 5 * d.size)
     name = d.new("C")
     d.add(StructuralGroup(RPP, links, (p,), name, (), (guide,), 1, 0.0, slot), c, [], [name])
-BUILD = {1: rrr, 2: rrp, 3: rpr, 4: prp, 5: rpp}
-"""How a group of each kind is added to a draft."""
-
-
 def triad(d: Draft, links: tuple[str, ...]) -> None:
     """A triangle on three legs, the first on a moving point, the others on anything; the second now and then a block in a slot."""
     triangle, first, second, third = links
@@ -302,6 +298,10 @@ def triad(d: Draft, links: tuple[str, ...]) -> None:
     d.on[triangle] = names
     for leg in legs:
         d.on[leg.link] = [leg.outer, leg.corner] if leg.form == "RR" else [leg.at]
+
+
+BUILD: dict[int, Callable[[Draft, Any], None]] = {1: rrr, 2: rrp, 3: rpr, 4: prp, 5: rpp, TRIAD.number: triad}
+"""How a group of each kind is added to a draft."""
 
 
 EVERYWHERE = ("guide", "far", "square", "coincident", "offset")
@@ -362,10 +362,8 @@ def _chain(rng: np.random.Generator, hard: str, kinds: tuple[int, ...]) -> tuple
     for i, kind in enumerate(kinds):
         d.hard = hard if i + 1 == len(kinds) or hard in EVERYWHERE else ""
         n = len(d.on) + 1
-        if kind == TRIAD.number:
-            triad(d, tuple(str(n + i) for i in range(4)))
-        else:
-            BUILD[kind](d, (str(n), str(n + 1)))
+        # Two links of order 2, four of order 3.
+        BUILD[kind](d, tuple(str(n + i) for i in range(2 * (KINDS[kind].order - 1))))
         if i + 1 < len(kinds):
             for link, a, b in d.lines():
                 if link in d.groups[-1].links:

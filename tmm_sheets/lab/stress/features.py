@@ -16,7 +16,6 @@ import numpy as np
 
 from tmm_sheets.construction.step import value_of
 from tmm_sheets.lab.stress.invariants import Residual, State, cross, dot, energy, powers, slopes
-from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.forces import InputForce
 from tmm_sheets.project import Project
 from tmm_sheets.task.variant import parse
@@ -197,14 +196,14 @@ weights = {one_of("true", "false")}
     return Features(Project(parse(text, "features.toml")), body, work, turning * r / 4, float(np.sin(np.arctan(sliding))))
 
 
-def features(rng: np.random.Generator, make: Callable[[Mechanism, Any], State]) -> Iterator[Residual]:
+def features(rng: np.random.Generator, make: Callable[..., State]) -> Iterator[Residual]:
     """Projects whose crank runs as the flywheel lets it, evenly or as given, and as an input drives it."""
     even = "0 rad/s2" if rng.random() < 0.5 else f"{rng.uniform(-40, 40)} rad/s2"
     for given, running in (("", "flywheel"), ("", even), (str(rng.choice(("slider", "cylinder"))), "")):
         yield from balance(drawn(rng, given, running), make)
 
 
-def balance(of: Features, make: Callable[[Mechanism, Any], State]) -> Iterator[Residual]:
+def balance(of: Features, make: Callable[..., State]) -> Iterator[Residual]:
     """Every power of a project against the change of its energy, position by position and over the cycle."""
     project, study = of.project, of.project.study
     m = study.mechanism
@@ -215,9 +214,9 @@ def balance(of: Features, make: Callable[[Mechanism, Any], State]) -> Iterator[R
 
     every = np.arange(len(s.phi))
     other, slope = slopes(s, every, 0.01)
-    kinetic = energy(s, 0.0)[0] + added * omega**2 / 2
+    kinetic = energy(s)[0] + added * omega**2 / 2
     rate = drive.acceleration / drive.speed if drive else study.accelerations.epsilon["1"].value / omega
-    change = slope(energy(other, 0.0)[0]) * omega + 2 * kinetic * rate
+    change = slope(energy(other)[0]) * omega + 2 * kinetic * rate
     loads, couples, _ = study.loads
     loaded = sum((dot(s.spread(x.vector), s.spread(study.velocities.points[x.at.name])) for of_link in loads.values()
                   for x in of_link if x.role == "applied"), 0.0)
@@ -227,7 +226,7 @@ def balance(of: Features, make: Callable[[Mechanism, Any], State]) -> Iterator[R
     lost = of.journal * (size["F10"] * np.abs(omega) + size["F21"] * np.abs(s.omega["2"] - omega))
     lost = lost + of.guide * (size["F32"] if of.body.turns else size["F30"]) * of.body.sliding(s)
     driving = _driving(of, s)
-    scale = np.abs(driving) + np.abs(loaded) + np.abs(weights) + lost + np.abs(2 * kinetic * rate) + powers(s, 0.0)
+    scale = np.abs(driving) + np.abs(loaded) + np.abs(weights) + lost + np.abs(2 * kinetic * rate) + powers(s)
     yield "power of a project = change of its energy", np.abs(driving + loaded + weights - lost - change) / scale
     if drive is not None:
         return

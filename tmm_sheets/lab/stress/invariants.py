@@ -23,6 +23,7 @@ from tmm_sheets.construction.function import Replay, fill
 from tmm_sheets.construction.indices import on_link, pair_index
 from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, TRIAD, GroupKind
+from tmm_sheets.mechanism.groups.contexts import Load
 from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
@@ -49,10 +50,10 @@ def dot(u: Any, v: Any) -> Any:
 
 
 class State:
-    """Plans of a mechanism at some crank angles as plain arrays, with their scales."""
+    """Plans of a mechanism at some crank angles as plain arrays, with their scales; ``gravity`` m/s2."""
 
-    def __init__(self, m: Mechanism, phi: Any) -> None:
-        self.m = m
+    def __init__(self, m: Mechanism, phi: Any, gravity: float = 0.0) -> None:
+        self.m, self.gravity = m, gravity
         self.phi = np.asarray(phi, dtype=float)
         self.positions: Positions = position_plan(m, self.phi)
         self.velocities: Velocities = velocity_plan(self.positions)
@@ -71,7 +72,7 @@ class State:
 
     def others(self, phi: Any) -> State:
         """The same mechanism at other crank angles, in the same way."""
-        return type(self)(self.m, phi)
+        return type(self)(self.m, phi, self.gravity)
 
     # Nobody asks for accelerations where only positions and velocities are differentiated.
 
@@ -81,6 +82,11 @@ class State:
         found = acceleration_plan(self.velocities)
         self.evaluate(found.plan)
         return found
+
+    @cached_property
+    def loads(self) -> tuple[dict[str, list[Load]], dict[str, list[Step]], Plan]:
+        """Weights and forces of inertia of every link, its couples, and their plan."""
+        return external_loads(self.positions, self.accelerations, self.gravity)
 
     @cached_property
     def a(self) -> dict[str, Any]:
@@ -322,7 +328,7 @@ def slopes(s: State, k: Any, h: Any) -> tuple[State, Callable[[Any], Any]]:
     return s.others(around.ravel()), slope
 
 
-def derivatives(s: State, gravity: float) -> Iterator[Residual]:
+def derivatives(s: State) -> Iterator[Residual]:
     """Differences of positions against velocities, of velocities against accelerations, of energy against the crank's power."""
     condition = np.where(s.built, s.condition, np.inf)
     k = np.flatnonzero(condition < TELLING)
@@ -338,50 +344,50 @@ def derivatives(s: State, gravity: float) -> Iterator[Residual]:
         # The plan's velocities belong to one speed of the crank.
         rate = slope(other.v[name]) * w + s.v[name][k] * e / w
         yield "derivative of velocity = acceleration", np.abs(rate - s.a[name][k]) / s.sharpest[k]
-    beside = energy(other, gravity)
-    change = slope(sum(beside)) * w + 2 * energy(s, gravity)[0][k] * e / w
+    beside = energy(other)
+    change = slope(sum(beside)) * w + 2 * energy(s)[0][k] * e / w
     # The kinetic energy beside the position: in it everything may stand still. Heights are rounded to a share of the reach.
     kinetic = beside[0].reshape(-1, len(k)).max(axis=0)
-    weight = gravity * sum(link.mass for link in s.m.links.values())
+    weight = s.gravity * sum(link.mass for link in s.m.links.values())
     rate = (s.largest(s.omega) + np.sqrt(s.largest(s.epsilon)))[k]
-    scale = (kinetic * rate + powers(s, gravity)[k]) * (s.reach / s.size)[k] + weight * s.reach[k] * rate
-    yield "power = change of energy", np.where(scale > 0, np.abs(balancing(s, gravity)[k] * w - change) / scale, 0.0)
+    scale = (kinetic * rate + powers(s)[k]) * (s.reach / s.size)[k] + weight * s.reach[k] * rate
+    yield "power = change of energy", np.where(scale > 0, np.abs(balancing(s)[k] * w - change) / scale, 0.0)
 
 
-def energy(s: State, gravity: float) -> tuple[Any, Any]:
+def energy(s: State) -> tuple[Any, Any]:
     """Kinetic energy of all links, J, and potential energy about the crank pivot."""
     kinetic, potential = np.zeros(s.phi.shape), np.zeros(s.phi.shape)
     for link in s.m.links.values():
         kinetic = kinetic + link.inertia * s.omega[link.name] ** 2 / 2
         if link.centre is not None:
             kinetic = kinetic + link.mass * np.abs(s.v[link.centre]) ** 2 / 2
-            potential = potential + link.mass * gravity * (s.z[link.centre] - s.m.fixed[s.m.crank.pivot]).imag
+            potential = potential + link.mass * s.gravity * (s.z[link.centre] - s.m.fixed[s.m.crank.pivot]).imag
     return kinetic, potential
 
 
-def powers(s: State, gravity: float) -> Any:
+def powers(s: State) -> Any:
     """Sum of the magnitudes of all powers, W."""
     total = np.zeros(s.phi.shape)
     for link in s.m.links.values():
         total = total + link.inertia * np.abs(s.omega[link.name] * s.epsilon[link.name])
         if link.centre is not None:
-            total = total + link.mass * (gravity + np.abs(s.a[link.centre])) * np.abs(s.v[link.centre])
+            total = total + link.mass * (s.gravity + np.abs(s.a[link.centre])) * np.abs(s.v[link.centre])
     return total
 
 
-def by_plans_and_lever(s: State, gravity: float) -> tuple[Any, Any]:
+def by_plans_and_lever(s: State) -> tuple[Any, Any]:
     """Balancing moment from the force plans, with its limits in change points, and from the lever, N m."""
-    loads, couples, _ = external_loads(s.positions, s.accelerations, gravity, ())
+    loads, couples, _ = s.loads
     limits = limits_of_forces(s.positions, s.accelerations, loads, couples, None)
     step = kinetostatics(s.positions, s.accelerations, loads, couples, None, limits=limits).balancing
     assert step is not None
-    return s.spread(step), balancing(s, gravity)
+    return s.spread(step), balancing(s)
 
 
-def statics(s: State, gravity: float) -> Iterator[Residual]:
+def statics(s: State) -> Iterator[Residual]:
     """Forces of every polygon, forces and moments on every link; balancing moment from the reactions and from the lever."""
     m = s.m
-    loads, link_couples, _ = external_loads(s.positions, s.accelerations, gravity, ())
+    loads, link_couples, _ = s.loads
     forces = kinetostatics(s.positions, s.accelerations, loads, link_couples, None)
     on_lever = lever(s.velocities, forces.external, link_couples, None)
     s.evaluate(forces.plan, *(fp.plan for fp in forces.plans.values()), on_lever.plan)
@@ -438,9 +444,9 @@ def _moments(s: State, loads: Any, link_couples: Any, forces: Any, reactions: di
     return turn
 
 
-def balancing(s: State, gravity: float) -> Any:
+def balancing(s: State) -> Any:
     """Balancing moment of the lever, N m."""
-    loads, couples, _ = external_loads(s.positions, s.accelerations, gravity, ())
+    loads, couples, _ = s.loads
     on_lever = lever(s.velocities, [load for of_link in loads.values() for load in of_link], couples, None)
     s.evaluate(on_lever.plan)
     assert on_lever.balancing is not None

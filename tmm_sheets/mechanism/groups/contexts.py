@@ -14,14 +14,12 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import Directions, Reals
-from tmm_sheets.construction.step import Helper, Plan, Rule, Step
-from tmm_sheets.mechanism.model import Leg as Leg
-from tmm_sheets.mechanism.model import OuterReaction as OuterReaction
+from tmm_sheets.construction.indices import pair_index
+from tmm_sheets.construction.step import Helper, Plan, Rule, Step, symbol
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
-    pass
-    from tmm_sheets.mechanism.model import Positions
+    from tmm_sheets.mechanism.model import Leg, Positions
 
 
 @dataclass(frozen=True)
@@ -125,12 +123,34 @@ class TangentialPart:
     vector: Step
 
 
+@dataclass(frozen=True)
+class Held:
+    """How a link of a group is held from outside, by the link ``other``: the ``line`` of the unknown reaction, and a ``part`` of it
+    across that line that moments, or projections on a slot, have given.
+    """
+
+    link: str
+    other: str
+    line: Step
+    part: Step | None = None
+
+    @property
+    def symbol(self) -> str:
+        """Symbol of the reaction."""
+        return symbol(f"F{pair_index(self.link, self.other)}")
+
+    @property
+    def rest(self) -> str:
+        """Symbol of what is not known: the normal part where there is another."""
+        return self.symbol if self.part is None else f"{self.symbol}^n"
+
+
 @dataclass
 class ForcePlan:
     """Force plan of one link or of a whole group: polygon 1-2-...-1 of ``plan`` with its forces in order.
 
     Point 1 closes it: where two unknown forces do, the known ones are laid off from point 2 on before it is found, and their sides
-    recorded when the first unknown one is.
+    recorded between both; where one does, from point 1 itself.
     """
 
     name: str
@@ -144,13 +164,13 @@ class ForcePlan:
         self.sides.append((symbol, tail, head, unknown))
         self.plan.vector(symbol, tail, head)
 
-    def begin(self) -> Step:
-        """Point 2, from which the known forces are laid off."""
-        return self.plan.add("2", rules.GIVEN, 0j)
+    def begin(self, number: int = 2) -> Step:
+        """The first point, from which the known forces are laid off: 2, or 1 where one unknown force leads back to it."""
+        return self.plan.add(str(number), rules.GIVEN, 0j)
 
     def lay(self, tail: Step, symbol: str, vector: Step) -> Step:
         """Lay a known force off from ``tail``; returns its head."""
-        head = self.plan.add(str(len(self.laid) + 3), rules.SHIFT, tail, vector)
+        head = self.plan.add(str(int(next(iter(self.plan)).name) + len(self.laid) + 1), rules.SHIFT, tail, vector)
         self.laid.append((symbol, tail, head))
         return head
 
@@ -160,18 +180,26 @@ class ForcePlan:
             tail = self.lay(tail, load.symbol, load.vector)
         return tail
 
+    def lay_part(self, tail: Step, held: Held) -> Step:
+        """Lay off the known part of a reaction, if there is one."""
+        return tail if held.part is None else self.lay(tail, f"{held.symbol}^τ", held.part)
+
+    def meet(self, one: Held, tail: Step, two: Held, *known: Any) -> Step:
+        """Close by two unknown forces: that of ``one`` ends in point 2, that of ``two`` begins at the ``tail`` of the known ones.
+
+        ``known`` is what else is known of the crossing of both lines.
+        """
+        start = self.plan["2"]
+        closing = self.plan.add("1", rules.LINE_LINE, start, one.line, tail, two.line, *known)
+        self.side(one.rest, closing, start, unknown=True)
+        self.record_laid()
+        self.side(two.rest, tail, closing, unknown=True)
+        return closing
+
     def record_laid(self) -> None:
         """Record the sides of what was laid off."""
-        for symbol, tail, head in self.laid:
-            self.side(symbol, tail, head)
-
-    def chain(self, start: int, tail: Step, loads: Iterable[Load]) -> Step:
-        """Lay the loads off one after another; returns the end of the chain."""
-        for n, load in enumerate(loads, start + 1):
-            head = self.plan.add(str(n), rules.SHIFT, tail, load.vector)
-            self.side(load.symbol, tail, head)
-            tail = head
-        return tail
+        for side in self.laid:
+            self.side(*side)
 
     def between(self, name: str, tail: Step, head: Step) -> Step:
         """The force that closes the polygon from ``tail`` to ``head``."""

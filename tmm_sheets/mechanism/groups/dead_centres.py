@@ -35,16 +35,6 @@ from tmm_sheets.words import marked
 MEANT = Decimal("1e-15")
 """Share of the sizes by which two lengths differ that are written down as the same: decimals are rounded to doubles."""
 
-Numbers = tuple[Rule, tuple[Any, ...]]
-"""A rule and the numbers of the mechanism it takes besides the crank angle."""
-
-
-def measured(g: StructuralGroup, phi: Any, half: Numbers, distance: Numbers | None = None) -> tuple[Step, Step | None]:
-    """Half-chord of a group's crossing and distance of its centres, m, as steps on crank angles ``phi``, rad, shape (n,)."""
-    h = Step(f"h {g.name}", half[0], (phi, *half[1]))
-    return h, None if distance is None else Step(f"d {g.name}", distance[0], (phi, *distance[1]))
-
-
 def on_crank(m: Mechanism, point: str) -> tuple[float, float] | None:
     """Radius of a point on the crank, m, and its angle ahead of the crank, rad; None when the point is elsewhere."""
     c = m.crank
@@ -191,9 +181,8 @@ def near_point(m: Mechanism, guide: Guide) -> tuple[Any, ...]:
     A direction is known to 1e-16 rad: about a point a thousand lengths away that shifts the guide by 1e-13 of a length, which the
     half-chords taken from the crank angle do not share. The nearest point comes from the numbers of the guide as they are given.
     """
-    assert not isinstance(guide.through, str)
     pivot = m.fixed[m.crank.pivot]
-    from_foot = (guide.through - pivot) / ar.unit(guide.direction)
+    from_foot = (guide.at - pivot) / ar.unit(guide.direction)
     fixed = max(abs(z - pivot) for z in m.fixed.values())
     size = m.crank.length + sum(sum(g.lengths) for g in m.groups) + fixed + abs(from_foot.imag)
     if abs(from_foot.real) <= AWAY * size:

@@ -6,6 +6,8 @@ middle hinge on an arc or on a line. So do its motions: by each leg it is known 
 
 from __future__ import annotations
 
+from abc import abstractmethod
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -17,6 +19,7 @@ from tmm_sheets.mechanism.groups.contexts import (
     TOUCH,
     AssemblyLimit,
     Crossing,
+    Held,
     Outline,
     Turning,
     extremes,
@@ -42,7 +45,6 @@ from tmm_sheets.mechanism.groups.dead_centres import (
     fold_and_stretch,
     gaps_of_arcs,
     gaps_of_line,
-    measured,
     meets,
     near_point,
     on_crank,
@@ -69,14 +71,16 @@ class HingedKind(GroupKind):
 
     crosses: ClassVar[Rule]
 
+    def held(self, pos: Positions, g: StructuralGroup) -> list[Any]:
+        """What holds the hinge, leg by leg: a point and a length, or a point and the direction of a guide."""
+        return [x for leg in self.legs(g) for x in ((pos.guide_points[leg.guide], pos.guide_directions[leg.guide]) if leg.guide else
+                                                    (pos.points[leg.outer], leg.length))]
+
     def position(self, pos: Positions, g: StructuralGroup) -> None:
-        c, legs = str(g.inner), self.legs(g)
-        known = pos.crossing(g)
-        args = [x for leg in legs for x in ((pos.guide_points[leg.guide], pos.guide_directions[leg.guide]) if leg.guide else
-                                            (pos.points[leg.outer], leg.length))]
+        c, known = str(g.inner), pos.crossing(g)
         side = (pos.side(g),) if self.two_ways else ()
-        pos.points[c] = pos.plan.add(c, self.crosses, *args, *side, *known)
-        for leg in legs:
+        pos.points[c] = pos.plan.add(c, self.crosses, *self.held(pos, g), *side, *known)
+        for leg in self.legs(g):
             pos.directions[leg.link] = pos.guide_directions[leg.guide] if leg.guide else pos.direction(leg.outer, c)
 
     def motion(self, plan: MotionPolygon, g: StructuralGroup) -> None:
@@ -88,26 +92,26 @@ class HingedKind(GroupKind):
     def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:
         """Tangential parts from moments of each rod about the middle hinge; reactions of guides across them."""
         pos, legs, c = forces.positions, self.legs(g), str(g.inner)
-        carriers = tuple(pos.mechanism.carrier(leg) for leg in legs)
-        parts: list[Step | None] = []
-        lines = []
-        for leg, carrier in zip(legs, carriers, strict=True):
+        ends = []
+        for leg in legs:
+            carrier = pos.mechanism.carrier(leg)
             if leg.guide:
-                parts.append(None)
-                lines.append(forces.normal(leg.link, carrier, leg.guide, pos.guide_directions[leg.guide]))
+                ends.append(Held(leg.link, carrier, forces.normal(leg.link, carrier, leg.guide, pos.guide_directions[leg.guide])))
             else:
                 total = forces.moment_sum(f"ΣM{leg.link}", pos.points[c], [leg.link])
-                parts.append(forces.tangential(leg.link, carrier, total, c, leg.outer))
-                lines.append(pos.direction(leg.outer, c))
-        known = pos.known_sine(g)
+                part = forces.tangential(leg.link, carrier, total, c, leg.outer)
+                ends.append(Held(leg.link, carrier, pos.direction(leg.outer, c), part))
+        known, (one, two) = pos.known_sine(g), ends
         if g.guides:
             # The lines of the velocities turned by 90 degrees, one of them the other way round; with friction other lines.
-            known = () if forces.deviates(legs[1].link, carriers[1]) else tuple(forces.negative(s) for s in known)
-        found = forces.group_polygon(g, parts, lines, carriers, known)
-        couples = {leg.link: forces.sliding(leg.link, carrier, force, pos.points[c])
-                   for leg, carrier, force in zip(legs, carriers, found, strict=True) if leg.guide}
-        for leg, carrier, force in zip(legs, carriers, found, strict=True):
-            forces.react(leg.link, carrier, pos.points[leg.outer or c], force, couples.get(leg.link))
+            known = () if forces.deviates(two.link, two.other) else tuple(forces.negative(s) for s in known)
+        found = forces.group_polygon(g, one, two, known)
+        # The inner reaction closes the forces of the first link: the same drawing, one more line.
+        forces.opposite(two.link, one.link, forces.read(found.plan, one.link, two.link, found.split, found.closing))
+        couples = {leg.link: forces.sliding(leg.link, end.other, found.reactions[leg.link], pos.points[c])
+                   for leg, end in zip(legs, ends, strict=True) if leg.guide}
+        for leg, end in zip(legs, ends, strict=True):
+            forces.react(leg.link, end.other, pos.points[leg.outer or c], found.reactions[leg.link], couples.get(leg.link))
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         c = str(g.inner)
@@ -118,11 +122,62 @@ class HingedKind(GroupKind):
         return tuple((leg.link, leg.guide) for leg in self.legs(g) if leg.guide)
 
 
-class RRRKind(HingedKind):
-    """Kind 1: two rods joined by a hinge, hinged to what is before them."""
+class TwoWayKind(HingedKind):
+    """Kinds whose two ways of assembly may pass into each other in change points.
 
-    number, form, orders = 1, marked("RRR"), ("RRR",)
-    crosses, two_ways = rules.ARC_ARC, True
+    Between crank and frame all that tells of their crossing are the ``numbers`` of the mechanism: the two ``between`` of these are
+    its gaps, ``half`` is the rule of the half-chord on crank angles, ``branches`` those of the branch, its side and the turning. Of
+    a group that hangs on others ``beside`` is the rule of the half-chord next to a change point. ``crossed`` is the rule of the
+    sine between its lines, from the half-chord, the distance of the centres if there is one, the lengths and the side.
+    """
+
+    two_ways = True
+    between: ClassVar[Callable[..., Gaps]]
+    half: ClassVar[Rule]
+    branches: ClassVar[tuple[Rule, ...]]
+    beside: ClassVar[Rule]
+    crossed: ClassVar[Rule]
+
+    @abstractmethod
+    def numbers(self, m: Mechanism, g: StructuralGroup) -> tuple[Any, ...] | None:
+        """What the crossing of a group follows from, one outer hinge on the crank, the rest fixed; None elsewhere."""
+
+    def apart(self, m: Mechanism, g: StructuralGroup, phi: Any) -> tuple[Step | None, Step | None]:
+        """Distance of the centres on crank angles, and their line where they come to lie in one place; nothing of arc and line."""
+        return None, None
+
+    def gaps(self, m: Mechanism, g: StructuralGroup) -> Gaps | None:
+        numbers = self.numbers(m, g)
+        return None if numbers is None else type(self).between(*numbers)
+
+    def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
+        numbers, gaps = self.numbers(m, g), self.gaps(m, g)
+        if numbers is None or gaps is None:
+            return None
+        distance, line = self.apart(m, g, phi)
+        turning = passing(m, g, phi, self.branches, numbers, turned=line is not None) if gaps.touching else None
+        return self._crossing(g, Step(f"h {g.name}", self.half, (phi, *numbers)), distance,
+                              g.side if turning is None else turning.side, turning, line)
+
+    def passage(self, pos: Positions, g: StructuralGroup, side: Any, root: Any) -> Crossing:
+        distance = None if g.guides else Step(f"d {g.name}", rules.DISTANCE, tuple(pos.points[name] for name in g.outer))
+        half = Step(f"h {g.name}", self.beside, (root, *self.held(pos, g)))
+        return self._crossing(g, half, distance, side, Turning(side, None, None, (side,) if isinstance(side, Step) else ()))
+
+    def _crossing(self, g: StructuralGroup, half: Step, distance: Step | None, side: Any, turning: Turning | None,
+                  line: Step | None = None) -> Crossing:
+        apart = () if distance is None else (distance,)
+        return Crossing(half, distance, Step(f"sin {g.name}", self.crossed, (half, *apart, *g.lengths, side)), turning, line)
+
+
+class RRRKind(TwoWayKind):
+    """Kind 1: two rods joined by a hinge, hinged to what is before them.
+
+    Half-chord h = sqrt(((l2 + l3)^2 - d^2) (d^2 - (l2 - l3)^2)) / 2d, d the distance of the outer hinges; the factors are the gaps.
+    """
+
+    number, form, orders, crosses = 1, marked("RRR"), ("RRR",), rules.ARC_ARC
+    between, half, branches, beside, crossed = gaps_of_arcs, HALF_OF_ARCS, ARCS, HALF_BESIDE_ARCS, SINE_OF_LINKS
 
     def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
         (p, q), (l1, l2) = g.outer, g.lengths
@@ -153,36 +208,23 @@ class RRRKind(HingedKind):
         (p, q), c = (pos.points[name].value for name in g.outer), pos.points[str(g.inner)].value
         return size / min(g.lengths) * size / np.abs(p - q) / sine(ar.ray(p, c), ar.ray(q, c))
 
-    def gaps(self, m: Mechanism, g: StructuralGroup) -> Gaps | None:
-        """(l2 + l3)^2 - d^2 and d^2 - (l2 - l3)^2, d the distance of the outer hinges."""
+    def numbers(self, m: Mechanism, g: StructuralGroup) -> tuple[Any, ...] | None:
         span = span_from_crank(m, g)
-        return None if span is None else gaps_of_arcs(*span, *g.lengths)
+        return None if span is None else (*span, *g.lengths)
 
     def gaps_at(self, pos: Positions, g: StructuralGroup) -> tuple[Any, Any, Any]:
         (p, q), (l1, l2) = (pos.points[name].value for name in g.outer), g.lengths
         d = np.abs(q - p)
         return (l1 + l2 - d) * (l1 + l2 + d), (d - l1 + l2) * (d + l1 - l2), (l1 + l2) * rounding(l1 + l2, p, q)
 
-    def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
-        """Half-chord h = sqrt(((l2 + l3)^2 - d^2) (d^2 - (l2 - l3)^2)) / 2d."""
+    def apart(self, m: Mechanism, g: StructuralGroup, phi: Any) -> tuple[Step | None, Step | None]:
         span, gaps = span_from_crank(m, g), self.gaps(m, g)
-        if span is None or gaps is None:
-            return None
-        numbers = (*span, *g.lengths)
-        met = meets(span, gaps, *g.lengths)
-        turning = passing(m, g, phi, ARCS, numbers, turned=met) if gaps.touching else None
-        side, line = g.side if turning is None else turning.side, None
-        if met:
-            line = Step(f"u {g.name}", LINE_OF_CENTRES, (phi, *span, 1.0 if on_crank(m, g.outer[0]) else -1.0))
-        half, distance = measured(g, phi, (HALF_OF_ARCS, numbers), (SIGNED_DISTANCE, numbers) if met else (DISTANCE, span))
-        return Crossing(half, distance, Step(f"sin {g.name}", SINE_OF_LINKS, (half, distance, *g.lengths, side)), turning, line)
-
-    def passage(self, pos: Positions, g: StructuralGroup, side: Any, root: Any) -> Crossing:
-        p, q = (pos.points[name] for name in g.outer)
-        half = Step(f"h {g.name}", HALF_BESIDE_ARCS, (root, p, g.lengths[0], q, g.lengths[1]))
-        distance = Step(f"d {g.name}", rules.DISTANCE, (p, q))
-        sine = Step(f"sin {g.name}", SINE_OF_LINKS, (half, distance, *g.lengths, side))
-        return Crossing(half, distance, sine, Turning(side, None, None, (side,) if isinstance(side, Step) else ()))
+        assert span is not None
+        assert gaps is not None
+        if not meets(span, gaps, *g.lengths):
+            return Step(f"d {g.name}", DISTANCE, (phi, *span)), None
+        return (Step(f"d {g.name}", SIGNED_DISTANCE, (phi, *span, *g.lengths)),
+                Step(f"u {g.name}", LINE_OF_CENTRES, (phi, *span, 1.0 if on_crank(m, g.outer[0]) else -1.0)))
 
     def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
         """Arcs about the crank pivot of radius rod plus crank and rod minus crank cross the arc of the rocker."""
@@ -200,11 +242,14 @@ class RRRKind(HingedKind):
 RRR = RRRKind()
 
 
-class RRPKind(HingedKind):
-    """Kind 2: a rod hinged to a slider on a guide."""
+class RRPKind(TwoWayKind):
+    """Kind 2: a rod hinged to a slider on a guide.
 
-    number, form, orders = 2, marked("RRP"), ("RRP", "PRR")
-    crosses, two_ways = rules.ARC_LINE, True
+    Half-chord h = sqrt((l - e) (l + e)) with the distance of its outer hinge from the guide, e = e0 + l1 sin(phi - psi).
+    """
+
+    number, form, orders, crosses = 2, marked("RRP"), ("RRP", "PRR"), rules.ARC_LINE
+    between, half, branches, beside, crossed = gaps_of_line, HALF_OF_LINE, LINE, HALF_BESIDE_LINE, SINE_TO_GUIDE
 
     def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
         p, guide, length = g.outer[0], g.guides[0], g.lengths[0]
@@ -227,41 +272,17 @@ class RRPKind(HingedKind):
         rod = pos.points[str(g.inner)].value - pos.points[g.outer[0]].value
         return size / g.lengths[0] / np.abs(ar.dot(pos.guide_directions[g.guides[0]].value, rod) / np.abs(rod))
 
-    @staticmethod
-    def _numbers(m: Mechanism, g: StructuralGroup) -> tuple[Any, ...] | None:
-        """What the crossing of a rod on the crank with a fixed guide follows from."""
+    def numbers(self, m: Mechanism, g: StructuralGroup) -> tuple[Any, ...] | None:
         guide, pin = m.guides[g.guides[0]], on_crank(m, g.outer[0])
         if pin is None or isinstance(guide.through, str):
             return None
         return *pin, g.lengths[0], m.fixed[m.crank.pivot], guide.through, guide.direction
-
-    def gaps(self, m: Mechanism, g: StructuralGroup) -> Gaps | None:
-        """The rod's length plus and minus the distance of its outer hinge from the guide."""
-        numbers = self._numbers(m, g)
-        return None if numbers is None else gaps_of_line(*numbers)
 
     def gaps_at(self, pos: Positions, g: StructuralGroup) -> tuple[Any, Any, Any]:
         p, guide, length = pos.points[g.outer[0]].value, g.guides[0], g.lengths[0]
         through = pos.guide_points[guide].value
         e = ar.cross(pos.guide_directions[guide].value, p - through)
         return length + e, length - e, rounding(length, p, through)
-
-    def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
-        """Half-chord h = sqrt((l - e) (l + e)) with the pin's distance from the guide e = e0 + l1 sin(phi - psi)."""
-        numbers, gaps = self._numbers(m, g), self.gaps(m, g)
-        if numbers is None or gaps is None:
-            return None
-        half, _ = measured(g, phi, (HALF_OF_LINE, numbers))
-        turning = passing(m, g, phi, LINE, numbers) if gaps.touching else None
-        side = g.side if turning is None else turning.side
-        return Crossing(half, None, Step(f"sin {g.name}", SINE_TO_GUIDE, (half, g.lengths[0], side)), turning)
-
-    def passage(self, pos: Positions, g: StructuralGroup, side: Any, root: Any) -> Crossing:
-        guide, length = g.guides[0], g.lengths[0]
-        half = Step(f"h {g.name}", HALF_BESIDE_LINE, (root, pos.points[g.outer[0]], length, pos.guide_points[guide],
-                                                      pos.guide_directions[guide]))
-        sine = Step(f"sin {g.name}", SINE_TO_GUIDE, (half, length, side))
-        return Crossing(half, None, sine, Turning(side, None, None, (side,) if isinstance(side, Step) else ()))
 
     def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
         """Arcs about the crank pivot of radius rod plus crank and rod minus crank cross the guide."""

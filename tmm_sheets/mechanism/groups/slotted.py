@@ -13,12 +13,12 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link, pair_index
-from tmm_sheets.construction.step import Helper, Plan, Rule, Step, symbol
+from tmm_sheets.construction.step import Helper, Plan, Rule, Step
 from tmm_sheets.mechanism.groups.contexts import (
     TOUCH,
     AssemblyLimit,
     Crossing,
-    Leg,
+    Held,
     Outline,
     extremes,
     lacking,
@@ -27,8 +27,8 @@ from tmm_sheets.mechanism.groups.contexts import (
     sine,
     span,
 )
-from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, PIN_ANGLE, TANGENT, measured, span_from_crank
-from tmm_sheets.mechanism.model import GroupKind, Mechanism, StructuralGroup
+from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, PIN_ANGLE, TANGENT, span_from_crank
+from tmm_sheets.mechanism.model import GroupKind, Leg, Mechanism, StructuralGroup
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ SINE = Rule("sine between slot and perpendicular to the line of pivots", lambda 
 class RPRKind(GroupKind):
     """Kind 3: a block hinged to a pin, sliding along a rocker that is hinged to a pivot."""
 
-    number, form, orders = 3, marked("RPR"), ("RPR",)
+    number, form, orders, slotted = 3, marked("RPR"), ("RPR",), "rocker"
 
     def position(self, pos: Positions, g: StructuralGroup) -> None:
         p, q = g.outer
@@ -77,31 +77,25 @@ class RPRKind(GroupKind):
         pos, m = forces.positions, forces.positions.mechanism
         (i, j), (p, q) = g.links, g.outer
         owner, base = m.owner(p), m.owner(q)
-        io = pair_index(i, owner)
         total = forces.moment_sum(f"ΣM{i}–{j}", pos.points[q], [i, j])
-        tangential = forces.tangential(i, owner, total, q, p)
-        radial = pos.direction(q, p)
+        tangential, radial = forces.tangential(i, owner, total, q, p), pos.direction(q, p)
         across = (forces.normal(i, j, f"{q}{p}", pos.directions[j]) if radial is pos.directions[j]
                   else forces.normal(i, j, f"напр {j}", pos.directions[j], tr("⟂dir {link}").format(link=j)))
-        block = forces.plan_of(i, (i,))
+        pin, block = Held(i, owner, radial, tangential), forces.plan_of(i, (i,))
         start = block.begin()
-        after = block.lay(start, f"F̅_{{{io}}}^τ", tangential)
+        after = block.lay_part(start, pin)
         end = block.lay_loads(after, forces.order(forces.loads[i], "weight"))
-        one = block.plan.add("1", rules.LINE_LINE, start, radial, end, across,
-                             *(() if forces.deviates(i, j) else pos.known_sine(g)))
-        block.between(f"F{io}n", one, start)
-        block.side(f"F̅_{{{io}}}^n", one, start, unknown=True)
-        block.record_laid()
-        f_ij = forces.close(block, i, j, end, one)
-        f_io = forces.reaction(i, owner, block.between(f"F{io}", one, after))
-        block.plan.vector(symbol(f"F{io}"), one, after)
+        one = block.meet(pin, end, Held(i, j, across), *(() if forces.deviates(i, j) else pos.known_sine(g)))
+        block.between(f"F{pair_index(i, owner)}n", one, start)
+        f_ij = forces.read(block, i, j, end, one, drawn=False)
+        f_io = forces.read(block, i, owner, one, after)
         inner = forces.sliding(i, j, f_ij, pos.points[p])
         f_ji = forces.opposite(j, i, f_ij)
         rocker = forces.plan_of(j, (j,))
-        first = rocker.plan.add("1", rules.GIVEN, 0j)
+        first = rocker.begin(1)
         on_j = forces.opposite_couple(j, i, inner)
         contact = forces.contact(j, i, pos.points[p], f_ji, on_j)
-        tail = rocker.chain(1, first, [contact, *forces.order(forces.loads[j], "weight")])
+        tail = rocker.lay_loads(first, [contact, *forces.order(forces.loads[j], "weight")])
         forces.loads[j].insert(0, contact)
         f_jb = forces.close(rocker, j, base, tail, first)
         forces.react(i, owner, pos.points[p], f_io)
@@ -134,7 +128,7 @@ class RPRKind(GroupKind):
         span = span_from_crank(m, g) if g.offset else None
         if span is None:
             return None
-        half, distance = measured(g, phi, (TANGENT, (*span, g.offset)), (DISTANCE, span))
+        half, distance = Step(f"h {g.name}", TANGENT, (phi, *span, g.offset)), Step(f"d {g.name}", DISTANCE, (phi, *span))
         return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance)))
 
     def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
@@ -159,9 +153,6 @@ class RPRKind(GroupKind):
     def about(self, g: StructuralGroup) -> str:
         return g.outer[1]
 
-    def rocker(self, g: StructuralGroup) -> str | None:
-        return g.links[1]
-
 
 RPR = RPRKind()
 
@@ -169,7 +160,7 @@ RPR = RPRKind()
 class RPPKind(GroupKind):
     """Kind 5: a block hinged to a pin in the slot of a link that slides along a guide."""
 
-    number, form, orders = 5, marked("RPP"), ("RPP", "PPR")
+    number, form, orders, slotted = 5, marked("RPP"), ("RPP", "PPR"), "ram"
 
     def position(self, pos: Positions, g: StructuralGroup) -> None:
         assert g.inner is not None
@@ -205,25 +196,24 @@ class RPPKind(GroupKind):
         pos, m = forces.positions, forces.positions.mechanism
         (i, j), p, guide = g.links, g.outer[0], g.guides[0]
         base = m.guides[guide].link
-        across_slot = forces.normal(i, j, pos.directions[i].name, pos.directions[i])
-        across_guide = forces.normal(j, base, guide, pos.guide_directions[guide])
+        slot = Held(j, i, forces.normal(i, j, pos.directions[i].name, pos.directions[i]))
+        rail = Held(j, base, forces.normal(j, base, guide, pos.guide_directions[guide]))
         fp = forces.plan_of(j, (j,))
         start = fp.begin()
         end = fp.lay_loads(start, forces.order(forces.loads[j], "inertia"))
-        one = fp.plan.add("1", rules.LINE_LINE, start, across_slot, end, across_guide)
-        f_ji = forces.close(fp, j, i, one, start)
-        fp.record_laid()
-        f_jb = forces.close(fp, j, base, end, one)
+        one = fp.meet(slot, end, rail)
+        f_ji = forces.read(fp, j, i, one, start, drawn=False)
+        f_jb = forces.read(fp, j, base, end, one, drawn=False)
         # Block: F_ij, its loads, closing force from the link that carries the pin.
         f_ij = forces.opposite(i, j, f_ji)
         forces.loads[i].insert(0, forces.contact(i, j, pos.points[p], f_ij))
         inner = forces.sliding(i, j, f_ji, pos.points[p])
         owner = m.owner(p)
         block = forces.plan_of(i, (i,))
-        first = block.plan.add("1", rules.GIVEN, 0j)
+        first = block.begin(1)
         loads = forces.loads[i]
         rest = [load for load in loads if load.role != "reaction"] + [load for load in loads[1:] if load.role == "reaction"]
-        tail = block.chain(1, first, [loads[0], *rest])
+        tail = block.lay_loads(first, [loads[0], *rest])
         f_io = forces.close(block, i, owner, tail, first)
         # The guided link also carries the opposite of the inner couple.
         on_j = forces.opposite_couple(j, i, inner)
@@ -253,9 +243,6 @@ class RPPKind(GroupKind):
 
     def about(self, g: StructuralGroup) -> str:
         return g.outer[0]
-
-    def ram(self, g: StructuralGroup) -> str | None:
-        return g.links[1]
 
 
 RPP = RPPKind()

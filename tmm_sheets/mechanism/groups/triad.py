@@ -20,11 +20,11 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link, pair_index
-from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step, symbol, value_of
+from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import three_legs
-from tmm_sheets.mechanism.groups.contexts import AssemblyLimit, Leg, Outline, SpecialPoint, lacking
-from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.mechanism.groups.contexts import AssemblyLimit, ForcePlan, Held, Outline, SpecialPoint, lacking
+from tmm_sheets.mechanism.model import GroupKind, Leg, Mechanism, Pair, StructuralGroup, sliding, turning
 from tmm_sheets.numbers import in_a_row, of_reader
 from tmm_sheets.words import marked, tell, tr
 
@@ -322,78 +322,49 @@ class TriadKind(GroupKind):
         """Kind 6: tangential parts from moments of each leg, a normal one from those of the group about the special point."""
         pos, m, triad, tri = forces.positions, forces.positions.mechanism, _of(g), g.links[0]
         s = pos.special[special_name(tri)]
-        c = s.third
-        owner = {leg: m.carrier(leg) for leg in triad.legs}
-        part: dict[Leg, Step] = {}
+        (a, b), c = s.pair, s.third
+        ends: dict[Leg, Held] = {}
         couple: dict[Leg, Step] = {}
         more: list[tuple[Step, Any, Any]] = []
         for leg in triad.legs:
+            part, owner = None, m.carrier(leg)
             if leg.guide:
-                couple[leg] = forces.guide_couple(leg.link, owner[leg], pos.points[leg.corner])
+                couple[leg] = forces.guide_couple(leg.link, owner, pos.points[leg.corner])
                 more.append((pos.points[leg.corner], 0j, couple[leg]))
-                continue
-            if leg.slot is None:
+            elif leg.slot is None:
                 total = forces.moment_sum(f"ΣM{leg.link}", pos.points[leg.corner], [leg.link])
-                part[leg] = forces.tangential(leg.link, owner[leg], total, leg.corner, leg.outer)
+                part = forces.tangential(leg.link, owner, total, leg.corner, leg.outer)
             else:
                 own = [load.vector for load in forces.loads[leg.link]]
-                name = f"F{pair_index(leg.link, owner[leg])}"
-                part[leg] = forces.parts[name] = forces.plan.add(f"{name}τ", ALONG_SLOT, pos.directions[leg.link], *own)
-            more.append((pos.points[leg.outer], part[leg], 0.0))
+                name = f"F{pair_index(leg.link, owner)}"
+                part = forces.parts[name] = forces.plan.add(f"{name}τ", ALONG_SLOT, pos.directions[leg.link], *own)
+            if part is not None:
+                more.append((pos.points[leg.outer], part, 0.0))
+            ends[leg] = Held(leg.link, owner, self._normal(pos, leg), part)
         total = forces.moment_sum(f"ΣM{s.name}", s.step, g.links, more)
-        normal = forces.plan.add(f"F{pair_index(c.link, owner[c])}n", BY_MOMENTS, total, s.step, pos.points[c.at],
-                                 self._normal(pos, c))
-        whole = self._polygon(forces, triad, s, owner, part, normal)
+        third = ends[c]
+        normal = forces.plan.add(f"F{pair_index(c.link, third.other)}n", BY_MOMENTS, total, s.step, pos.points[c.at], third.line)
+
+        def between(fp: ForcePlan, tail: Step) -> tuple[Step, tuple[Held, Step, Step]]:
+            """The loads of the triangle, the reaction of the third leg and its loads."""
+            triangle = fp.lay_loads(tail, forces.order(forces.loads[tri], "weight"))
+            after = fp.lay(fp.lay_part(triangle, third), third.rest, normal)
+            return fp.lay_loads(after, forces.order(forces.loads[c.link], "weight")), (third, triangle, after)
+
+        whole = forces.group_polygon(g, ends[a], ends[b], between=between)
+        apart = whole.reactions[c.link].args[0]
+        # What closes the polygon of each leg alone: the same drawing, one line more.
+        for leg, tail, head in ((a, whole.split, whole.closing), (c, whole.middle, apart), (b, whole.closing, whole.middle)):
+            forces.opposite(tri, leg.link, forces.read(whole.plan, leg.link, tri, tail, head))
         for leg in triad.legs:
+            owner, force = ends[leg].other, whole.reactions[leg.link]
             if leg.guide:
-                forces.arm(leg.link, owner[leg], couple[leg], whole[leg])
-                forces.react(leg.link, owner[leg], pos.points[leg.corner], whole[leg], couple[leg])
+                forces.arm(leg.link, owner, couple[leg], force)
+                forces.react(leg.link, owner, pos.points[leg.corner], force, couple[leg])
                 continue
             if leg.slot is not None:
                 forces.sliding(leg.link, tri, forces.reactions[f"F{pair_index(leg.link, tri)}"], pos.points[leg.outer])
-            forces.react(leg.link, owner[leg], pos.points[leg.outer], whole[leg])
-
-    def _polygon(self, forces: Kinetostatics, g: TriadGroup, s: SpecialPoint, owner: dict[Leg, str], part: dict[Leg, Step],
-                 normal: Step) -> dict[Leg, Step]:
-        """Plan of the whole group: first leg, triangle, third leg, second leg; inner reactions by a line more each."""
-        pos, tri = forces.positions, g.links[0]
-        (a, b), c = s.pair, s.third
-        fp = forces.plan_of(g.name, g.links)
-        plan, start = fp.plan, fp.begin()
-
-        def loads(tail: Step, link: str) -> Step:
-            return fp.lay_loads(tail, forces.order(forces.loads[link], "weight"))
-
-        def sign(leg: Leg, upper: str = "") -> str:
-            return f"F̅_{{{pair_index(leg.link, owner[leg])}}}{upper}"
-
-        def tangential(tail: Step, leg: Leg) -> Step:
-            return fp.lay(tail, sign(leg, "^τ"), part[leg]) if leg in part else tail
-
-        after_a = tangential(start, a)
-        leg_a = loads(after_a, a.link)
-        triangle = loads(leg_a, tri)
-        after_c = fp.lay(tangential(triangle, c), sign(c, "^n" if c in part else ""), normal)
-        leg_c = loads(after_c, c.link)
-        before_b = loads(leg_c, b.link)
-        last = tangential(before_b, b)
-        closing = plan.add("1", rules.LINE_LINE, start, self._normal(pos, a), last, self._normal(pos, b))
-        fp.side(sign(a, "^n" if a in part else ""), closing, start, unknown=True)
-        fp.record_laid()
-        fp.side(sign(b, "^n" if b in part else ""), last, closing, unknown=True)
-        found = {}
-        for leg, p, q in ((a, closing, after_a), (c, triangle, after_c), (b, before_b, closing)):
-            name = f"F{pair_index(leg.link, owner[leg])}"
-            found[leg] = forces.reaction(leg.link, owner[leg], fp.between(name, p, q))
-            if leg in part:
-                plan.vector(symbol(name), p, q)
-        # What closes the polygon of each leg alone: the same drawing, one line more.
-        for leg, p, q in ((a, leg_a, closing), (c, leg_c, triangle), (b, closing, leg_c)):
-            name = f"F{pair_index(leg.link, tri)}"
-            inner = forces.reaction(leg.link, tri, fp.between(name, p, q))
-            plan.vector(symbol(name), p, q)
-            forces.opposite(tri, leg.link, inner)
-        return found
+            forces.react(leg.link, owner, pos.points[leg.outer], force)
 
     # --- limits -------------------------------------------------------------------------------------------------------
 

@@ -33,8 +33,6 @@ GAP = 6.0
 """Clear distance between the pole of S'' and the auxiliary circle, mm."""
 BESIDE, BARE = GAP + 3.0 + 13.0, 6.0 + 13.0
 """Width that axes need beyond the phases and the pole distance, mm: with the circle (its diameter not counted), and without."""
-NEAREST = 7.0
-"""Pole distance that the floors leave where the phases are short, mm: below it rays become too steep to draw at all."""
 FILLED = 0.6
 """Share of the height below which three diagrams to one scale factor would be too low: then each has its own."""
 OVERFULL = 1e9

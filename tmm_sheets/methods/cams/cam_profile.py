@@ -20,6 +20,7 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import Floats, Points, Reals, primitive
 from tmm_sheets.construction.step import Given, GivenNumber, Helper, Plan, Reading, Rule, Step, value_of
+from tmm_sheets.construction.tables import planned
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams import cam_inversion, cam_zone
 from tmm_sheets.methods.cams.cam_displacement import Displacement, ExactMotion, in_phase
@@ -479,13 +480,12 @@ class RollerCam(Cam):
 
     # --- roller
 
-    @cached_property
-    def choice(self) -> Plan:
+    @planned("cam-roller", marked("Choice of the radius of the roller"), "m")
+    def choice(self, plan: Plan) -> None:
         """Choice of the roller's radius by both rules.
 
         Where another part of the profile is in the way, it limits the roller as a radius of curvature does.
         """
-        plan = Plan("cam-roller", tr("Choice of the radius of the roller"), "m")
         rho = self.curvature["ρ_min"]
         share = self.given("curvature_share")
         of_rho = SHARE_OF_RHO if share is None else (share, share)
@@ -497,10 +497,9 @@ class RollerCam(Cam):
         chosen = self.given("roller")
         if chosen is not None:
             plan.add("r_p", CHOSEN, chosen, symbol="r_p")
-            return plan
+            return
         limit = plan.add("r_max_2", PART, plan["ρ_2"].args[0], most)
         plan.add("r_p", ROUNDED, plan.add("r", LEAST, plan["r_0_2"], plan["ρ_2"], limit), symbol="r_p")
-        return plan
 
     def _inscribed(self, plan: Plan) -> list[Step]:
         """Record the least circle that touches a centre profile anywhere from inside and goes through another of its points.

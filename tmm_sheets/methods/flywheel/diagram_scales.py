@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import count, pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -209,6 +209,8 @@ class Diagrams(Intervals, ABC):
 
     space: DiagramSpace | None
     fixed_scales: FlywheelScales | None
+    usual_space: ClassVar[DiagramSpace] = DiagramSpace()
+    """Room for the diagrams when none is given."""
 
     def mass(self, at: Reduction) -> Step:
         """Reduced moment of inertia whose graph is drawn, kg m2: of all links without the flywheel."""
@@ -226,7 +228,7 @@ class Diagrams(Intervals, ABC):
         return self.fixed_scales or self._fitted_scales()
 
     def _fitted_scales(self) -> FlywheelScales:
-        space, reduced = self.space or self._space(), self.reduced
+        space, reduced = self.space or self.usual_space, self.reduced
         work = Quadrature(reduced.moment, self.edges)
         constant = -work.total / reduced.period
         edges = self.at_borders.moment(1).value, self.at_borders.moment(-1).value
@@ -285,10 +287,6 @@ class Diagrams(Intervals, ABC):
         while not plain(energy.mu / own.mu):
             own = replace(own, mu=finer(own.mu))
         return own
-
-    def _space(self) -> DiagramSpace:
-        """Room for the diagrams when none is given."""
-        return DiagramSpace()
 
     @abstractmethod
     def _energies(self, excess: Floats, mass: Floats) -> Iterable[float]:

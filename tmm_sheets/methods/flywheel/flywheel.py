@@ -11,14 +11,14 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.rules import GIVEN_INERTIA
 from tmm_sheets.construction.step import Given, Plan, Reading, Reported, Rule, Step, named
-from tmm_sheets.construction.tables import StepTable, record
+from tmm_sheets.construction.tables import StepTable, planned, record
 from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace, FlywheelScales
 from tmm_sheets.methods.flywheel.energy_mass import STOPS, ConvergedWheel, Energy, Running, speed, steady, too_light
 from tmm_sheets.methods.flywheel.wheel import STEEL, MotorCheck, RimWheel, motor_check, wheel
@@ -116,10 +116,8 @@ class Flywheel(Works):
     fixed_scales: FlywheelScales | None = None
     where: str = ""
 
-    @property
-    @abstractmethod
-    def method(self) -> str:
-        """Name of the method, as in the project file."""
+    method: ClassVar[str]
+    """Name of the method, as in the project file."""
 
     @property
     def delta(self) -> Step:
@@ -183,30 +181,26 @@ class Flywheel(Works):
     def held(self) -> Step:
         """What of a given flywheel, and of what turns with the crank beside it, the segment ab belongs to, kg m2."""
 
-    @cached_property
-    def given_plan(self) -> Plan:
+    @planned("flywheel-given", marked("Given flywheel"))
+    def given_plan(self, plan: Plan) -> None:
         """A given flywheel: ``J_м``, with a rotor ``J_доб`` both, ``J_I`` with the crank, which is what runs: ``J_вр``."""
-        plan = Plan(f"flywheel-given{self.where}", tr("Given flywheel"), "")
         assert self.data.inertia is not None
         given = {"wheel": named(self.data.inertia, "flywheel.inertia", tr("J_f"), "kg*m2"), "crank": self.reduced.crank,
                  "rotor": self.rotor_plan.steps.get("J_рот")}
         given["added"] = record(plan, "J_м J_доб" if given["rotor"] else "J_м", GIVEN_WHEEL, given=given)
         record(plan, "J_I J_вр", GIVEN_WHEEL, given=given)
-        return plan
 
     @property
     def added(self) -> Step:
         """A given flywheel and the rotor, kg m2: what turns with the crank and is no part of it."""
         return self.given_plan["J_доб" if "J_доб" in self.given_plan else "J_м"]
 
-    @cached_property
-    def delta_plan(self) -> Plan:
+    @planned("flywheel-delta", marked("Coefficient of non-uniformity"))
+    def delta_plan(self, plan: Plan) -> None:
         """From the segment ab to the coefficient of non-uniformity that a given flywheel leaves: ``δ``."""
-        plan = Plan(f"flywheel-delta{self.where}", tr("Coefficient of non-uniformity"), "")
         plan.add("δ", DELTA_OF_SEGMENT, self.ab, self.mu("energy"), self.held, self.omega1)
         if not float(plan["δ"].value) < STOPS:
             raise too_light(float(self.given_plan["J_м"].value))
-        return plan
 
     @cached_property
     def first_plan(self) -> Plan:
@@ -221,22 +215,20 @@ class Flywheel(Works):
         plan.add("J_вр", RUNNING, first, flywheel, say=None if float(flywheel.value) > 0 else none, symbol=tr("J_rot"))
         return plan
 
-    @cached_property
-    def limit_plan(self) -> Plan:
+    @planned("flywheel-limit", marked("Flywheel as n → ∞"))
+    def limit_plan(self, plan: Plan) -> None:
         """The same for vanishing intervals: ``J_I∞``, ``J_м∞``, and by how much the drawn one is off: ``ΔJ_м``, ``разность`` in %.
 
         Of a given flywheel ``δ∞``, and the difference of ``δ``.
         """
-        plan = Plan(f"flywheel-limit{self.where}", tr("Flywheel as n → ∞"), "")
         excess = self._excess(plan)
         if self.given:
             found = plan.add("δ∞", DELTA_OF_EXCESS, excess, self.held, self.omega1)
             plan.add("разность", DIFFERENCE, self.delta, found, symbol=tr("difference"))
-            return plan
+            return
         flywheel = self._bare(plan, "J_м∞", self._first_converged(plan, excess), BARE_LIMIT, BARE_OF_ROTOR_LIMIT, tr("J_f∞"))
         plan.add("ΔJ_м", APART, self.first_plan["J_м"], flywheel, symbol=tr("ΔJ_f"))
         plan.add("разность", DIFFERENCE, self.first_plan["J_м"], flywheel, symbol=tr("difference"))
-        return plan
 
     def _bare(self, plan: Plan, name: str, first: Step, without: Rule, with_rotor: Rule, symbol: str) -> Step:
         """What of all that turns with the crank is left for the flywheel."""
@@ -244,18 +236,17 @@ class Flywheel(Works):
             return plan.add(name, without, first, self.reduced.crank, symbol=symbol)
         return plan.add(name, with_rotor, first, self.reduced.crank, self.rotor_plan["J_рот"], symbol=symbol)
 
-    @cached_property
-    def rotor_plan(self) -> Plan:
+    @planned("rotor", marked("Rotor of the motor"))
+    def rotor_plan(self, plan: Plan) -> None:
         """Moment of inertia of the motor's rotor reduced to the crank: ``J_рот``."""
-        plan, motor = Plan(f"rotor{self.where}", tr("Rotor of the motor"), ""), self.data.motor
+        motor = self.data.motor
         if motor is None or not motor.rotor_inertia:
-            return plan
+            return
         u: Any = motor.ratio and named(motor.ratio, "flywheel.motor.ratio", "u")
         u = u or plan.add("u", RATIO, named(motor.rated, "flywheel.motor.rated", tr("ω_r"), "rad/s"), self.omega1)
         rotor = plan.add("J_рот", ROTOR, named(motor.rotor_inertia, "flywheel.motor.rotor_inertia", tr("J_r"), "kg*m2"), u,
                          symbol=tr("J_rotor"))
         plan.add("J_к", TOGETHER, self.reduced.crank, rotor)
-        return plan
 
     @property
     def turning(self) -> float:
@@ -368,19 +359,17 @@ class Flywheel(Works):
                            named(m.synchronous, "flywheel.motor.synchronous", tr("ω_s"), "rad/s"),
                            named(m.rated, "flywheel.motor.rated", tr("ω_r"), "rad/s"), m.power, self.unevenness, self.where)
 
-    @cached_property
-    def power_plan(self) -> Plan:
+    @planned("drive-power", marked("Mean power over the cycle"))
+    def power_plan(self, plan: Plan) -> None:
         """Mean power on the crank from the work of the cycle: ``P``, W; ``P_дв`` on the other side of what has an efficiency.
 
         What a working machine takes, what an engine gives off.
         """
-        plan = Plan(f"drive-power{self.where}", tr("Mean power over the cycle"), "")
         takes = self.reduced.resisting
         power = plan.add("P", MEAN_POWER if takes else POWER_GIVEN_OFF, self.driving_plan["M"], self.omega1, symbol=tr("P_m"))
         if self.data.efficiency is not None:
             eta = named(self.data.efficiency, "flywheel.efficiency", "η")
             plan.add("P_дв", POWER_BEFORE if takes else POWER_BEHIND, power, eta, symbol=tr("P_mot") if takes else tr("P_out"))
-        return plan
 
     def speed(self, phi: Floats, inertia: float | None = None) -> Floats:
         """Angular velocity of the crank over the angle with the exact flywheel (or another, kg m2), rad/s.

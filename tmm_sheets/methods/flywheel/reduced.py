@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import cached_property, reduce
 from operator import add
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -282,11 +281,7 @@ class Reduced:
                 self._replays[what, side] = found
             return step.value
         chosen = (row.value for f in self.forces for row in f.chosen(phi, side)) if what == MOMENT else ()
-        begin = perf_counter()
-        (value,) = replay([value_of(self.cycle.angles(phi)), phi, phi, *chosen])
-        tally = self.mechanism.search(PURPOSE)
-        assert tally is not None
-        tally.again(len(replay), perf_counter() - begin)
+        (value,) = replay([value_of(self.cycle.angles(phi)), phi, phi, *chosen], self.mechanism.search(PURPOSE))
         return value
 
     @cached_property
@@ -327,10 +322,6 @@ class Reduced:
     def inertia(self, phi: Any) -> Any:
         """Reduced moment of inertia of the moving links without the flywheel, kg m2."""
         return self._tried(phi, "inertia", lambda at: at.inertia)
-
-    def inertia_slope(self, phi: Any) -> Any:
-        """Derivative of the reduced moment of inertia over the crank angle, kg m2/rad."""
-        return self._tried(phi, "slope", lambda at: at.slope)
 
     @property
     def crank_inertia(self) -> float:
@@ -374,12 +365,8 @@ class Reduced:
         """True for a term that is one number for all angles: of a link that turns evenly or not at all."""
         return not any(np.ndim(a.value) for a in step.args if isinstance(a, Step))
 
-    def inertia_parts(self, phi: Any) -> dict[str, Any]:
-        """The terms of the reduced moment of inertia without the crank's, kg m2, by the names of :attr:`inertia_terms`."""
-        return self.parts(Reduction(self, TRIED, phi))
-
     def parts(self, at: Reduction) -> dict[str, Any]:
-        """The same of a reduction that was made already."""
+        """The terms of the reduced moment of inertia without the crank's, kg m2, by the names of :attr:`inertia_terms`."""
         return {name: np.broadcast_to(term.value / self.omega1**2, np.shape(at.phi))
                 for name, term in at.terms.items() if name not in self.crank_terms}
 

@@ -24,6 +24,7 @@ from tmm_sheets.construction.readable import MAIN
 from tmm_sheets.construction.rules import DISTANCE
 from tmm_sheets.construction.scale import Scale, fit
 from tmm_sheets.construction.step import Given, Plan, Reading, Reported, Row, Rule, Step, value_of
+from tmm_sheets.construction.tables import planned
 from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace
 from tmm_sheets.methods.flywheel.energy_mass import (
     AT_CONTACT,
@@ -64,10 +65,6 @@ SPEED = Rule(
            "rad/s."), unit="rad/s")
 
 
-SPACE = DiagramSpace(reading=2, twice=200.0)
-"""Room of the sheet: the segment ab is read off the energies."""
-
-
 class Wittenbauer(Flywheel):
     """Flywheel by the energy-mass curve: the smooth work curve over J(phi).
 
@@ -75,13 +72,9 @@ class Wittenbauer(Flywheel):
     -2.7 %, the bare points -4.4 %, this curve +0.8 % of the limit.
     """
 
-    @property
-    def method(self) -> str:
-        """Name of the method, as in the project file."""
-        return "wittenbauer"
-
-    def _space(self) -> DiagramSpace:
-        return SPACE
+    method = "wittenbauer"
+    usual_space = DiagramSpace(reading=2, twice=200.0)
+    """The segment ab is read off the energies."""
 
     @cached_property
     def inertia_angle(self) -> Scale:
@@ -125,20 +118,17 @@ class Wittenbauer(Flywheel):
         """The energy-mass diagram."""
         return (self.energy_mass_plan,)
 
-    @cached_property
-    def speed_plan(self) -> Plan:
+    @planned("energy-mass-speed", marked("Angular velocity of the input link by the energy-mass diagram"), "", "labels")
+    def speed_plan(self, plan: Plan) -> None:
         """The diagram read as the running of the machine with its flywheel: ``ω_max``, ``ω_min``, ``ω1`` at the positions, rad/s.
 
         The tangents meet where neither energy nor inertia is left, so every point of the curve tells both in all; the height of the
         upper tangent's intercept is the energy of what was added. Of a machine that needs no flywheel it tells nothing.
         """
-        title = tr("Angular velocity of the input link by the energy-mass diagram")
-        plan = Plan(f"energy-mass-speed{self.where}", title, "", self.labels)
         for name, rule in (("max", FASTEST), ("min", SLOWEST)):
             plan.add(f"ω_{name}", rule, self.omega1, self.drawn_delta)
         plan.add("ω1", SPEED, self.excess_ordinates, self.energy_mass_plan["a"], self.inertia_plan["J"], *self._running(plan),
                  symbol="ω_1")
-        return plan
 
     def _running(self, plan: Plan) -> tuple[Any, ...]:
         """Scale factors, what was added to the drawn inertia, the angular velocity at the upper tangent."""
@@ -274,10 +264,7 @@ class Compared:
 class Mertsalov(Flywheel):
     """Flywheel by the curve T_I(phi), with the angular velocity of the crank it leads to."""
 
-    @property
-    def method(self) -> str:
-        """Name of the method, as in the project file."""
-        return "mertsalov"
+    method = "mertsalov"
 
     def mass(self, at: Reduction) -> Step:
         """Reduced moment of inertia of the links without the crank, kg m2."""
@@ -299,14 +286,13 @@ class Mertsalov(Flywheel):
         """Ordinate of the energy of one millimetre of J_II: mu_J omega^2/(2 mu_E)."""
         return self.scales.inertia.mu * self.reduced.omega1**2 / 2 / self.scales.energy.mu
 
-    @cached_property
-    def energy_plan(self) -> Plan:
+    @planned("first-energy", marked("Graph of the kinetic energy of the first group of links"), "mm", "labels")
+    def energy_plan(self, plan: Plan) -> None:
         """The curve T_I and its extremes, mm.
 
         ``T_II`` and ``T_I`` (ordinates at the positions), ``points`` of the curve, ``M_max`` and ``M_min`` (points of contact of
         the horizontal tangents), ``a`` and ``b`` (on the ordinate axis), ``ab`` (their distance); ``E_II`` and ``E_I``, J.
         """
-        plan = Plan(f"first-energy{self.where}", tr("Graph of the kinetic energy of the first group of links"), "mm", self.labels)
         convert = self.mu("inertia"), self.omega1, self.mu("energy")
         plan.auxiliary("μ_T", ENERGY_SCALE, *convert[:2])
         second = plan.add("T_II", CONVERT, self.inertia_plan["J"], *convert)
@@ -323,15 +309,13 @@ class Mertsalov(Flywheel):
                                      ("E_I", tr("Energy of the first group of links {name} = {0}·{1} J/mm = {value} J."), first)):
             plan.add(name, FROM_PAPER, ordinate, self.mu("energy"),
                      say=said)
-        return plan
 
-    @cached_property
-    def speed_plan(self) -> Plan:
+    @planned("crank-speed", marked("Graph of the angular velocity of the input link"), "mm", "labels")
+    def speed_plan(self, plan: Plan) -> None:
         """The same curve read as the angular velocity: ``O`` (its axis), ``y`` (ordinates, mm), ``ω1`` (rad/s) at the positions.
 
         ``μ_ω`` is its scale factor, ``ω_max`` and ``ω_min`` the angular velocity at the tangents.
         """
-        plan = Plan(f"crank-speed{self.where}", tr("Graph of the angular velocity of the input link"), "mm", self.labels)
         energy = self.energy_plan
         mu = plan.add("μ_ω", SPEED_SCALE, self.mu("energy"), self.first_plan["J_вр"], self.omega1)
         axis = plan.add("O", MIDDLE, energy["a"], energy["b"])
@@ -344,7 +328,6 @@ class Mertsalov(Flywheel):
                      say=tr("Permitted: {formula}."))
             plan.add("[ω_min]", SLOWEST, self.omega1, self.permitted,
                      say=tr("Permitted: {formula}."))
-        return plan
 
     @property
     def own_plans(self) -> tuple[Plan, ...]:
@@ -435,10 +418,9 @@ class Mertsalov(Flywheel):
         return tuple(Compared(name, float(first.value), self.running(max(float(first.value), least)), first)
                      for name, first in found)
 
-    @cached_property
-    def comparison_plan(self) -> Plan:
+    @planned("comparison", marked("Comparison with the exact running"))
+    def comparison_plan(self, plan: Plan) -> None:
         """Exact running with each of these flywheels: ``ω_max``, ``ω_min``, ``δ`` with its number; ``ΔJ`` limits, ``e`` theory."""
-        plan = Plan(f"comparison{self.where}", tr("Comparison with the exact running"), "")
         for i, c in enumerate(self.compared, 1):
             criterion = f"steady running with {c.first:.6g} kg m2 on the crank whose extremes have the mean omega1"
             say = tr("{method}: exact running by the law of kinetic energy gives {{name}} = {{value}} rad/s."
@@ -447,11 +429,10 @@ class Mertsalov(Flywheel):
                                    say=say) for name, value in (("max", c.running.fastest), ("min", c.running.slowest)))
             plan.add(f"δ{i}", NON_UNIFORMITY, fast, slow)
         if self.given:
-            return plan
+            return
         plan.add("ΔJ", BETWEEN_LIMITS, self.limit_plan["J_I∞"], self.other.limit_plan["J_I∞"])
         contacts = self.mass(self.at("exact-contacts", np.array([self.limit.phi_max, self.limit.phi_min])))
         plan.add("e", EXCESS, *(plan.add(f"J_{name}", AT_CONTACT, contacts, k) for k, name in enumerate(("max", "min"))))
-        return plan
 
     excess = Reading("comparison_plan", "e")
     """How much the procedure takes too much by theory: (J_II(phi_max) + J_II(phi_min))/2, kg m2; terms in delta left out."""

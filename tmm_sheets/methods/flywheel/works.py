@@ -13,7 +13,7 @@ from tmm_sheets.construction.expression import Floats, primitive
 from tmm_sheets.construction.rules import GIVEN_NUMBER, taken
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Given, Helper, Plan, Row, Rule, Step, named
-from tmm_sheets.construction.tables import StepTable, record
+from tmm_sheets.construction.tables import StepTable, planned, record
 from tmm_sheets.methods.flywheel.diagram_scales import Diagrams
 from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT
 from tmm_sheets.methods.integration import AREA, ON_CURVE, ORIGIN, SMOOTH, Quadrature, differentiate, integrate
@@ -160,83 +160,63 @@ class Works(Diagrams):
         n = len(self.reduced.labels)
         return Given(np.append(np.arange(n), 0), "positions of the closed cycle")
 
-    @cached_property
-    def across_plan(self) -> Plan:
+    @planned("abscissae@positions", marked("Abscissae of the positions"), "mm", "labels")
+    def across_plan(self, plan: Plan) -> None:
         """Abscissae of the positions, mm: ``x``; on the graph J(phi), where it has another scale, ``x_J``."""
-        plan = Plan(f"abscissae@positions{self.where}", tr("Abscissae of the positions"), "mm", self.labels)
         phi = self.data_plan["φ1"]
         plan.add("x", ABSCISSA, phi, self.mu("angle"))
         if self.inertia_angle is not self.scales.angle:
             mu = named(self.inertia_angle.mu, "scales.mu_phi", "μ_φ", "rad/mm")
             turn = named(self.inertia_turn, "cycle", "2π", "rad")
             plan.add("x_J", ABSCISSA, plan.auxiliary("φ1 of a turn", FIRST_TURN, phi, turn), mu)
-        return plan
 
     @property
     def across(self) -> Step:
         """Abscissae of the positions, mm."""
         return self.across_plan["x"]
 
-    @cached_property
-    def borders_plan(self) -> Plan:
+    @planned("abscissae@borders", marked("Abscissae of the borders of the intervals"), "mm", "borders")
+    def borders_plan(self, plan: Plan) -> None:
         """Angles ``φ`` of the borders of the intervals and their abscissae ``x``, mm; ``x_`` with a border's name is one alone."""
-        plan = Plan(f"abscissae@borders{self.where}", tr("Abscissae of the borders of the intervals"), "mm", self.borders)
         choice = "positions, jumps and kinks of the moment"
         phi = plan.add("φ", GIVEN_NUMBER, Given(self.edges, "borders of the intervals", "φ_1", "rad", choice=choice))
         x = plan.add("x", ABSCISSA, phi, self.mu("angle"))
         for k, name in enumerate(self.borders):
             plan.auxiliary(f"x_{name}", BORDER_AT, x, k)
-        return plan
 
-    @cached_property
-    def data_plan(self) -> Plan:
+    @planned("flywheel-data@given", marked("Givens of the flywheel"), "", "labels")
+    def data_plan(self, plan: Plan) -> None:
         """What is given: angles ``φ1`` of the positions and ``δ``, unless it is asked."""
-        plan = Plan(f"flywheel-data@given{self.where}", tr("Givens of the flywheel"), "", self.labels)
         plan.add("φ1", GIVEN_NUMBER, Given(self.reduced.phi, "cycle", "φ_1", "rad"))
         if not self.given:
             plan.add("δ", GIVEN_NUMBER, self.permitted)
-        return plan
 
     # --- the construction ---------------------------------------------------------------------------
-    @cached_property
-    def abscissae(self) -> Floats:
-        """Borders of the intervals on paper, mm."""
-        return np.asarray(self.scales.angle.mm(self.edges))
-
-    @cached_property
-    def moment_plan(self) -> Plan:
+    @planned("reduced-moment", marked("Graph of the reduced moment"), "mm", "labels")
+    def moment_plan(self, plan: Plan) -> None:
         """Graph of the reduced moment: step ``M`` holds its points at the positions, mm, ``M_пр`` the moment, N m."""
-        plan = Plan(f"reduced-moment{self.where}", tr("Graph of the reduced moment"), "mm", self.labels)
         moment = plan.add("M_пр", MOMENT_AT, self.reduced.numbered.moment(), self.closing, symbol=tr("M_red"))
         plan.add("M", PLOT, self.across, plan.add("y_M", TO_PAPER, moment, self.mu("moment")))
-        return plan
 
     @cached_property
     def work_ends(self) -> tuple[Step, ...]:
         """Ends of the chords of the work graph."""
         return tuple(self.work_plan[name] for name in self.borders)
 
-    @cached_property
-    def middles_plan(self) -> Plan:
+    @planned("ordinates@middles", marked("Ordinates of the moment in the middles of the intervals"), "mm", "intervals")
+    def middles_plan(self, plan: Plan) -> None:
         """Ordinates of the moment in the middles of the intervals, mm: ``y``."""
-        plan = Plan(f"ordinates@middles{self.where}", tr("Ordinates of the moment in the middles of the intervals"), "mm",
-                    self.intervals)
         plan.add("y", TO_PAPER, self.at_middles.moment(), self.mu("moment"))
-        return plan
 
-    @cached_property
-    def slopes_plan(self) -> Plan:
+    @planned("slopes@borders", marked("Slopes of the graph of work at the borders of the intervals"), "mm", "borders")
+    def slopes_plan(self, plan: Plan) -> None:
         """Slopes of the work curve on paper at the borders of the intervals, behind each (``+``) and before it (``−``)."""
-        plan = Plan(f"slopes@borders{self.where}", tr("Slopes of the graph of work at the borders of the intervals"), "mm",
-                    self.borders)
         for name, side in (("+", 1), ("−", -1)):
             plan.add(name, TO_SLOPE, self.at_borders.moment(side), self.mu("moment"), self.pole)
-        return plan
 
-    @cached_property
-    def intervals_plan(self) -> Plan:
+    @planned("ordinates@intervals", marked("Ordinates of the moment by intervals"), "mm")
+    def intervals_plan(self, plan: Plan) -> None:
         """The same interval by interval: ``y``, ``+`` (at its beginning), ``−`` (at its end) with its name."""
-        plan = Plan(f"ordinates@intervals{self.where}", tr("Ordinates of the moment by intervals"), "mm")
         slopes, middles = self.slopes_plan, self.middles_plan["y"]
         for k, interval in enumerate(self.intervals):
             left, right = self._drawn_at(plan, k, 1), self._drawn_at(plan, k + 1, -1)
@@ -252,7 +232,6 @@ class Works(Diagrams):
                     (STEEPEST, plan[f"y{interval}"], self.pole, STEEP)
                     if steep.min() >= -LEVEL * chord**2 and ahead > STEEP * chord**2 > 0 else
                     (SLOPE_OF_CHORD, slopes[side], border) if at is None else (BORDER_SLOPE, at, self.pole)))
-        return plan
 
     def _drawn_at(self, plan: Plan, border: int, side: int) -> Step | None:
         """Ordinate of the moment at a border, mm, as it was drawn at a position; None where there is none or the moment jumps."""
@@ -276,22 +255,20 @@ class Works(Diagrams):
         """Pole distance, mm."""
         return named(self.scales.pole, "scales.H", "H", "mm")
 
-    @cached_property
-    def work_plan(self) -> Plan:
+    @planned("work", marked("Graph of work"), "mm")
+    def work_plan(self, plan: Plan) -> None:
         """Graphical integration of the moment: see :func:`integrate` for the names of its steps; ``A(φ)`` is the smooth curve."""
-        plan, of = Plan(f"work{self.where}", tr("Graph of work"), "mm"), self.intervals_plan
+        of = self.intervals_plan
         across = [self.borders_plan.auxiliaries[f"x_{name}"] for name in self.borders]
         ends = integrate(plan, "", across, [of[f"y{name}"] for name in self.intervals], self.pole,
                          borders=self.borders, intervals=self.intervals, mark=self.mark)
         plan.add("A(φ)", SMOOTH, *ends, *(of[f"{side}{name}"] for side in "+−" for name in self.intervals))
         area = plan.add("∫M", AREA_ORDINATE, self.area_plan["A_Σ"], self.mu("work"))
         plan.add("ΔA", BESIDE_AREA, ends[-1], area)
-        return plan
 
-    @cached_property
-    def area_plan(self) -> Plan:
+    @planned("area@limit", marked("Work by the area of the graph of the moment"), "", "labels")
+    def area_plan(self, plan: Plan) -> None:
         """Work by the area of the graph of the moment: ``A`` at the positions, ``A_Σ`` of the cycle, J; ``M`` its mean, N m."""
-        plan = Plan(f"area@limit{self.where}", tr("Work by the area of the graph of the moment"), "", self.labels)
         q = Quadrature(np.zeros_like, self.edges, 4)
         moment = self.reduced.at("area", q.at).moment()
         ends = Given(q.panels * np.array(self.at_positions), "borders of the positions")
@@ -299,26 +276,22 @@ class Works(Diagrams):
                        Given(q.weights, "weights of the quadrature", over="curve"), ends)
         total = plan.add("A_Σ", WORK_AT, row, len(self.labels) - 1)
         plan.add("M", MEAN_MOMENT, total, named(self.reduced.period, "cycle", "φ_ц", "rad"))
-        return plan
 
-    @cached_property
-    def driving_plan(self) -> Plan:
+    @planned("driving-moment", marked("Graph of the constant moment"), "mm")
+    def driving_plan(self, plan: Plan) -> None:
         """Work of the constant moment (step ``K``, end of its line) and its differentiation (step ``dK``), mm; ``M``, N m."""
-        plan = Plan(f"driving-moment{self.where}", tr("Graph of the constant moment"), "mm")
         origin = plan.add("0", ORIGIN, 0.0)
         end = plan.add("K", BALANCE, self.work_ends[-1])
         (found,) = differentiate(plan, "", [origin, end], self.pole, intervals=["K"])
         plan.add("M", CONSTANT_MOMENT, found, self.mu("moment"))
-        return plan
 
-    @cached_property
-    def total_plan(self) -> Plan:
+    @planned("total-work", marked("Graph of the total work"), "mm", "labels")
+    def total_plan(self, plan: Plan) -> None:
         """Sum of works at the positions: ``ΣA`` at the scale of work, ``ΔE`` at that of energy, mm; ``A``, ``A_K``, ``E``, J.
 
         Where the graph has its own scale ``ΔE`` is drawn to that, and ``ΔE′`` is what the energy-mass diagram takes from it.
         ``δA`` is how much greater the work of the cycle is by the ordinates in the middles than by the area, % of the area.
         """
-        plan = Plan(f"total-work{self.where}", tr("Graph of the total work"), "mm", self.labels)
         given = {"x": self.across, "K": self.driving_plan["K"], "μ_A": self.mu("work"), "μ_E": self.mu("energy"),
                  "last": len(self.labels) - 1, "area": self.area_plan["A_Σ"]}
         record(plan, "y_1", TOTAL, given=given)
@@ -328,7 +301,6 @@ class Works(Diagrams):
             record(plan, "ΣA ΔE ΔE′ points A A_K E A_Σ δA", OF_OWN_SCALE, TOTAL, given=given)
         else:
             record(plan, "ΣA ΔE points A A_K E A_Σ δA", TOTAL, given=given)
-        return plan
 
     @property
     def excess_ordinates(self) -> Step:
@@ -345,19 +317,16 @@ class Works(Diagrams):
         """Angle over which that graph is drawn, rad."""
         return self.reduced.period
 
-    @cached_property
-    def inertia_plan(self) -> Plan:
+    @planned("reduced-inertia", marked("Graph of the reduced moment of inertia"), "mm", "labels")
+    def inertia_plan(self, plan: Plan) -> None:
         """Graph of the reduced moment of inertia: ``J`` the ordinates, ``points`` at the positions, mm; ``J_пр``, kg m2."""
-        plan = Plan(f"reduced-inertia{self.where}", tr("Graph of the reduced moment of inertia"), "mm", self.labels)
         inertia = plan.add("J_пр", INERTIA_AT, self.mass(self.reduced.numbered), self.closing, symbol=tr("J_red"))
         ordinate = plan.add("J", LAY_DOWN, plan.add("y_J", TO_PAPER, inertia, self.mu("inertia")))
         plan.add("points", PLOT, self.across_plan["x_J" if "x_J" in self.across_plan else "x"], ordinate)
-        return plan
 
-    @cached_property
-    def contacts_plan(self) -> Plan:
+    @planned("ordinates@contacts", marked("Ordinates of the graphs at the points of contact"), "mm")
+    def contacts_plan(self, plan: Plan) -> None:
         """Ordinates of the graphs at the angles of the contacts, see :meth:`contact`."""
-        return Plan(f"ordinates@contacts{self.where}", tr("Ordinates of the graphs at the points of contact"), "mm")
 
     def contact(self, name: str, phi: float, criterion: str) -> tuple[Step, Step, Step]:
         """Abscissa, and ordinates of dE and J, mm, at the angle of a contact, chosen by a criterion."""

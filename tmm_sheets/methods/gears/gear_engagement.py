@@ -244,7 +244,7 @@ def last_point(pair: PairGeometry) -> str:
     return "N2" if not pair.internal else "B" if pair.driver == 1 else "A"
 
 
-def engagement_plan(pair: PairGeometry) -> Plan:
+def record_engagement(pair: PairGeometry, plan: Plan) -> None:
     """Centres, circles, line of action, active part and overlap angles.
 
     The direction ``N1N2`` runs from N1 through the pole. Steps: ``O1 O2 Pw``, circles ``rw1 r1 rb1 ra1 rf1`` and of wheel 2,
@@ -252,7 +252,6 @@ def engagement_plan(pair: PairGeometry) -> Plan:
     at A and B cutting the working pitch circles in ``a1 b1 a2 b2``, angles ``phi1 phi2``, ratios ``eps1 eps2``,
     their mean ``eps`` and by how many per cent it is off, ``Δeps``.
     """
-    plan = Plan("gear-engagement", tr("Gear meshing"), "m")
     one, two = pair.wheels
     given = {"down": 1j if pair.internal else -1j, "radius": one.step("rw"), "distance": pair.step("a_w"), "side": hand(pair),
              "tau1": one.step("tau"), "tau2": two.step("tau"), "eps_alpha": pair.step("eps_alpha")}
@@ -274,7 +273,6 @@ def engagement_plan(pair: PairGeometry) -> Plan:
         record(plan, "a b phi", ENGAGEMENT, wheel=i)
         record(plan, f"eps{i}", ENGAGEMENT, given=given)
     record(plan, "eps Δeps", ENGAGEMENT, given=given)
-    return plan
 
 
 def parts_of_pole_segment(drawn: float) -> int:
@@ -382,9 +380,9 @@ def sliding_between(pair: PairGeometry, engagement: Plan, share: Reals) -> Plan:
     return _sliding_steps(plan, pair, engagement, np.maximum(-share, 0), np.maximum(share, 0))
 
 
-def greatest_sliding(pair: PairGeometry, engagement: Plan) -> Plan:
+def record_greatest_sliding(pair: Any, plan: Plan) -> None:
     """Sliding of each wheel at the end of the active line next to its own foot: steps ``theta1``, ``theta2``."""
-    plan = Plan("gear-greatest-sliding", tr("Greatest specific sliding at the dedenda of the teeth"), "m")
+    engagement: Plan = pair.engagement
     pole, feet = engagement["Pw"], (engagement["N1"], engagement["N2"])
     ordinate = plan.add("yV", TAKEN_SPEED, common_ordinate(pair), symbol="y_V")
     for i, name in zip((1, 2), "AB" if pair.driver == 1 else "BA", strict=True):
@@ -393,7 +391,6 @@ def greatest_sliding(pair: PairGeometry, engagement: Plan) -> Plan:
                                       "point {point} {{name}} = {{value}} mm."
                                       ).format(point=name)) for k in (i, 3 - i))
         plan.add(f"theta{i}", SLIDING, own, other, symbol=f"θ_{i}")
-    return plan
 
 
 def _sliding_steps(plan: Plan, pair: PairGeometry, engagement: Plan, to_first: Any, to_second: Any) -> Plan:

@@ -14,9 +14,9 @@ import numpy as np
 
 from tmm_sheets.construction.expression import Reals, primitive
 from tmm_sheets.construction.step import Given, GivenNumber, Kind, Plan, Rule, Step
-from tmm_sheets.construction.tables import StepTable, record
+from tmm_sheets.construction.tables import StepTable
 from tmm_sheets.methods.gears.rack import Rack
-from tmm_sheets.words import marked, tr
+from tmm_sheets.words import marked
 
 FILLET = 0.38
 """Fillet radius of the basic rack in modules (GOST 13755; manual 000, 6.4, item 5)."""
@@ -310,13 +310,6 @@ RACK_SIZES: StepTable = {
                 "inclination")),
 }
 """Sizes of the rack that cuts a wheel, and the angles of rolling of the first and last position that touch its flank."""
-
-
-def rack_sizes(geometry: Plan, i: int) -> Plan:
-    """Sizes of the rack that cuts wheel ``i``, and the angles of rolling of the first and last position that touch its flank."""
-    plan = Plan("gear-rack-sizes", tr("Sizes of the generating rack"), "mm")
-    record(plan, " ".join(RACK_SIZES), RACK_SIZES, wheel=str(i), given=geometry.steps)
-    return plan
 
 
 def addendum(plan: Plan, i: Any) -> str:

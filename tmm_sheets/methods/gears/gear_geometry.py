@@ -139,9 +139,12 @@ LIKE_PINION = _formula("shift of the ring like the pinion's", lambda x1: x1, (N,
                         "{value}."), "")
 
 
-WHEEL = "r rb rw ra rf s s_chord p_chord"
-"""What each wheel has by itself."""
-QUALITY = "tau phi_alpha rho_w rho_p r_low"
+BOTH = ("1", "2")
+BEHIND_SHIFTS = (
+    (("",), "p"), (BOTH, "r rb rw ra rf s s_chord p_chord"), (("",), "pb"), (BOTH, "rho_a"), (("",), "ym N1N2 g_alpha eps_alpha"),
+    (BOTH, "tau phi_alpha rho_w rho_p r_low"),
+)
+"""What follows from the shifts: of the pair, or of each wheel."""
 TOOTH = "alpha_a sa sa_m"
 
 
@@ -190,16 +193,9 @@ def geometry_plan(data: GearData) -> Plan:
             add("x" if inside else "x1", "1" if inside else "", gf.OF_DISTANCE)
         add("x2", "", pair, gf.OF_DISTANCE)
         add("y dy")
-    add("p")
-    both = (("1", pair), ("2", ring))
-    for wheel, of in both:
-        add(WHEEL, wheel, of)
-    add("pb")
-    for wheel in "12":
-        add("rho_a", wheel)
-    add("ym N1N2 g_alpha eps_alpha")
-    for wheel, of in both:
-        add(QUALITY, wheel, of)
+    for wheels, names in BEHIND_SHIFTS:
+        for wheel in wheels:
+            add(names, wheel, ring if wheel == "2" else {})
     for wheel in "12":
         of_ring = inside and wheel == "2"
         add(TOOTH if of_ring else f"{TOOTH} rho_l", wheel, ring if of_ring else {})

@@ -12,10 +12,11 @@ import numpy.typing as npt
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.scale import Scale, fit_standard
 from tmm_sheets.construction.step import Plan, Reported, Rule, Step
+from tmm_sheets.construction.tables import planned, record
 from tmm_sheets.methods.gears import gear_engagement as ge
 from tmm_sheets.methods.gears import rack
 from tmm_sheets.methods.gears.gear_engagement import on_normal, unrolled
-from tmm_sheets.methods.gears.gear_formulas import GearData, given, rack_sizes
+from tmm_sheets.methods.gears.gear_formulas import RACK_SIZES, GearData, given
 from tmm_sheets.methods.gears.gear_geometry import GearWheel, PairGeometry, warnings_of
 from tmm_sheets.words import marked, tr
 
@@ -47,10 +48,9 @@ class GearPair(PairGeometry):
         found += [there[name] for name in ("smooth_sliding", "rack_sizes", "generating") if name in there]
         return {plan.name: plan for plan in found}
 
-    @cached_property
-    def engagement(self) -> Plan:
-        """Centres, circles, line of action, A and B, overlap angles."""
-        return ge.engagement_plan(self)
+    engagement = planned("gear-engagement", marked("Gear meshing"), "m")(ge.record_engagement)
+    worst_sliding = planned("gear-greatest-sliding", marked("Greatest specific sliding at the dedenda of the teeth"), "m")(
+        ge.record_greatest_sliding)
 
     @cached_property
     def sliding(self) -> Plan:
@@ -60,9 +60,9 @@ class GearPair(PairGeometry):
     @cached_property
     def _teeth(self) -> tuple[Plan, Plan]:
         one, two = (ge.tooth_plan(self, w, self.engagement) for w in self.wheels)
-        record = record_cut if self.profile == "rack" else record_flank
+        record_profile = record_cut if self.profile == "rack" else record_flank
         for wheel, plan in zip(self.wheels, (one, two), strict=True):
-            record(wheel, ge.side_of(self, wheel), self.engagement, plan)
+            record_profile(wheel, ge.side_of(self, wheel), self.engagement, plan)
         return one, two
 
     @cached_property
@@ -87,10 +87,10 @@ class GearPair(PairGeometry):
         w = self.pinion
         return rack.drawn_positions(self.rack_sizes, w.step("r"), self.step("alpha"), POSITIONS - 1)
 
-    @cached_property
-    def rack_sizes(self) -> Plan:
-        """Sizes of the rack that cuts the pinion, and how far it rolls."""
-        return rack_sizes(self.geometry, self.pinion.number)
+    @planned("gear-rack-sizes", marked("Sizes of the generating rack"), "mm")
+    def rack_sizes(self, plan: Plan) -> None:
+        """Sizes of the rack that cuts the pinion, and the angles of rolling of the first and last position that touch its flank."""
+        record(plan, " ".join(RACK_SIZES), RACK_SIZES, wheel=str(self.pinion.number), given=self.geometry.steps)
 
     @property
     def hand(self) -> int:
@@ -170,11 +170,6 @@ class GearPair(PairGeometry):
     def smooth_sliding(self) -> Plan:
         """Speeds and sliding along the line, close enough for a smooth curve."""
         return self.sliding_curve(np.concatenate([np.linspace(-1, 0, 241)[:-1], np.linspace(0, 1, 241)]))
-
-    @cached_property
-    def worst_sliding(self) -> Plan:
-        """Sliding of each wheel where it is worst, at the foot of its working flank: steps ``theta1``, ``theta2``."""
-        return ge.greatest_sliding(self, self.engagement)
 
     @property
     def greatest_sliding(self) -> tuple[float, float]:

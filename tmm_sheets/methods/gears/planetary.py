@@ -75,6 +75,11 @@ def efficiency_case(inner: float, driver: str) -> str:
     return driver if driver != "carrier" else f"carrier, i {'<' if inner < 1 else '>'} 1"
 
 
+def internal_pairs(signs: tuple[int, int]) -> tuple[tuple[int, int], ...]:
+    """Satellite and ring, numbers of wheels from 0, of the internal pairs of a stage."""
+    return tuple((satellite, ring) for satellite, ring, sign in ((1, 0, signs[0]), (2, 3, signs[1])) if sign < 0)
+
+
 def assembles(signs: tuple[int, int], z: Sequence[Any], satellites: int) -> Reals:
     """True where ``satellites`` identical blocks can be put in at equal angles."""
     return (z[0] * z[2] - signs[0] * signs[1] * z[1] * z[3]) % (satellites * np.gcd(z[1], z[2])) == 0
@@ -213,12 +218,10 @@ class _Task:
 
     def free_of_interference(self, z: list[Ints]) -> list[Ints]:
         """Those stages whose rings are large enough to mesh with their satellites."""
-        s = self.scheme.signs
-        for satellite, ring, sign in ((1, 0, s[0]), (2, 3, s[1])):
-            if sign < 0:
-                teeth = range(int(z[satellite].max(initial=0)) + 1)
-                least = np.array([least_ring(v, self.data.addendum) or 10**6 for v in teeth])
-                z = self._only(z, z[ring] >= least[z[satellite]])
+        for satellite, ring in internal_pairs(self.scheme.signs):
+            teeth = range(int(z[satellite].max(initial=0)) + 1)
+            least = np.array([least_ring(v, self.data.addendum) or 10**6 for v in teeth])
+            z = self._only(z, z[ring] >= least[z[satellite]])
         return z
 
     @staticmethod

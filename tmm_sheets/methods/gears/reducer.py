@@ -16,7 +16,7 @@ import numpy as np
 
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.step import Given, GivenNumber, Plan, Reported, Rule, Step
-from tmm_sheets.construction.tables import StepTable, record
+from tmm_sheets.construction.tables import StepTable, planned, record
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears import planetary
 from tmm_sheets.methods.gears.planetary import (
@@ -178,32 +178,6 @@ def ratio_plan(data: ReducerTable, teeth: ToothSet, k: int, criterion: str, chos
     return plan
 
 
-def conditions_plan(data: ReducerTable, ratio: Plan) -> Plan:
-    """Coaxiality, assembly, neighbourhood, and the least rings of internal pairs."""
-    plan = Plan("reducer-conditions", tr("Conditions of coaxiality, assembly and neighbourhood"), "")
-    scheme = SCHEMES[data.scheme]
-    numbers = stage_numbers(data, 0)
-    s, z = scheme.signs, [ratio[f"z{n}"] for n in numbers]
-    given = {"satellites": Given(data.satellites, "reducer.satellites", "q", over="none"),
-             "addendum": GivenNumber(data.addendum, "reducer.addendum"), "z_2": z[1], "z_3": z[2]}
-    record(plan, "q ha", CONDITIONS, given=given)
-    for i, (side, a, b) in enumerate((("left", 0, 1), ("right", 3, 2))):
-        plan.add(f"coaxiality_{side}", SIDE_OF_COAXIALITY, s[i], z[a], z[b], say=said_with_sign(SIDE_OF_COAXIALITY, s[i]),
-                 symbol=f"z_{a + 1} {'+' if s[i] > 0 else '−'} z_{b + 1}")
-    record(plan, "coaxiality", CONDITIONS)
-    plan.add("assembly", ASSEMBLY, s[0] * s[1], plan["q"], *z, say=said_with_sign(ASSEMBLY, s[0] * s[1]))
-    record(plan, "between width neighbourhood", CONDITIONS, given=given)
-    for satellite, ring, sign in internal_pairs(s):
-        if sign < 0:
-            plan.add(f"least_z{numbers[ring]}", LEAST_RING, z[satellite], plan["ha"], symbol=f"z_{{{numbers[ring]}min}}")
-    return plan
-
-
-def internal_pairs(signs: Sequence[int]) -> tuple[tuple[int, int, int], ...]:
-    """Satellite, its central wheel (numbers from 0) and the sign of both pairs of a stage."""
-    return (1, 0, signs[0]), (2, 3, signs[1])
-
-
 def tiers_of(data: ReducerTable) -> tuple[float, ...]:
     """Steps of the deviation of the ratio, the first that has any sets decides: none beyond what is permitted."""
     return *(t for t in TIERS if t < data.tolerance), data.tolerance
@@ -295,10 +269,22 @@ class Reducer(Train):
         chosen = ratio_plan(self.table, self.chosen, 0, criterion)
         return chosen, *(ratio_plan(self.table, t, k, criterion, chosen) for k, t in enumerate(self.runners_up, 1))
 
-    @cached_property
-    def conditions(self) -> Plan:
-        """Coaxiality, assembly, neighbourhood."""
-        return conditions_plan(self.table, self.sets[0])
+    @planned("reducer-conditions", marked("Conditions of coaxiality, assembly and neighbourhood"))
+    def conditions(self, plan: Plan) -> None:
+        """Coaxiality, assembly, neighbourhood, and the least rings of internal pairs."""
+        data, s, numbers = self.table, self.scheme.signs, self.stage_wheels[0]
+        z = [self.sets[0][f"z{n}"] for n in numbers]
+        given = {"satellites": Given(data.satellites, "reducer.satellites", "q", over="none"),
+                 "addendum": GivenNumber(data.addendum, "reducer.addendum"), "z_2": z[1], "z_3": z[2]}
+        record(plan, "q ha", CONDITIONS, given=given)
+        for i, (side, a, b) in enumerate((("left", 0, 1), ("right", 3, 2))):
+            plan.add(f"coaxiality_{side}", SIDE_OF_COAXIALITY, s[i], z[a], z[b], say=said_with_sign(SIDE_OF_COAXIALITY, s[i]),
+                     symbol=f"z_{a + 1} {'+' if s[i] > 0 else '−'} z_{b + 1}")
+        record(plan, "coaxiality", CONDITIONS)
+        plan.add("assembly", ASSEMBLY, s[0] * s[1], plan["q"], *z, say=said_with_sign(ASSEMBLY, s[0] * s[1]))
+        record(plan, "between width neighbourhood", CONDITIONS, given=given)
+        for satellite, ring in planetary.internal_pairs(s):
+            plan.add(f"least_z{numbers[ring]}", LEAST_RING, z[satellite], plan["ha"], symbol=f"z_{{{numbers[ring]}min}}")
 
     def told(self, name: str) -> float:
         """A number of the chosen set: its ratios ``u`` .., efficiencies ``eta`` .."""
@@ -348,11 +334,10 @@ class Reducer(Train):
         """The internal pairs of the first stage that interfere without shifts."""
         z, numbers = self.chosen.stage, self.stage_wheels[0]
         found = []
-        for satellite, ring, sign in internal_pairs(self.scheme.signs):
-            if sign < 0:
-                least = int(self.conditions[f"least_z{numbers[ring]}"].value)
-                if not least or z[ring] < least:
-                    found.append(Interference(numbers[satellite], numbers[ring], z[satellite], least))
+        for satellite, ring in planetary.internal_pairs(self.scheme.signs):
+            least = int(self.conditions[f"least_z{numbers[ring]}"].value)
+            if not least or z[ring] < least:
+                found.append(Interference(numbers[satellite], numbers[ring], z[satellite], least))
         return tuple(found)
 
     def results(self) -> dict[str, Any]:

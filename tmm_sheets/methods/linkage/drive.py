@@ -27,7 +27,7 @@ from tmm_sheets.words import marked, tell, tr
 if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.accelerations import Accelerations
     from tmm_sheets.methods.linkage.positions import Positions
-    from tmm_sheets.methods.linkage.velocities import Velocities
+    from tmm_sheets.methods.linkage.velocities import MotionPolygon, Velocities
 
 EQUAL_STROKE = Rule("equal parts of a stroke", lambda start, end, parts, number: start + (end - start) / parts * number,
                     ("ordinate", "ordinate", "number", "number"), "ordinate",
@@ -71,8 +71,7 @@ def _far(m: Mechanism, drive: Drive, place: Reals) -> tuple[Any, Any]:
     if not drive.slides:
         return m.fixed[drive.far], place
     guide = m.guides[drive.group.guides[0]]
-    assert not isinstance(guide.through, str)
-    return guide.through + place * ar.unit(guide.direction), drive.group.lengths[0]
+    return guide.at + place * ar.unit(guide.direction), drive.group.lengths[0]
 
 
 def driven(m: Mechanism) -> Mechanism:
@@ -121,8 +120,7 @@ def _reach(m: Mechanism, drive: Drive) -> tuple[float, float]:
         apart = abs(m.fixed[drive.far] - pivot)
         return abs(apart - length), apart + length
     guide, rod = m.guides[drive.group.guides[0]], drive.group.lengths[0]
-    assert not isinstance(guide.through, str)
-    to_pivot = (pivot - guide.through) * ar.unit(guide.direction).conjugate()
+    to_pivot = (pivot - guide.at) * ar.unit(guide.direction).conjugate()
     outer, inner = (np.sqrt(max(reach**2 - to_pivot.imag**2, 0.0)) for reach in (rod + length, rod - length))
     if drive.place[0] < to_pivot.real:
         return float(to_pivot.real - outer), float(to_pivot.real - inner)
@@ -169,22 +167,36 @@ def drive_velocities(vel: Velocities, drive: Drive) -> None:
     across = vel.perpendicular(*((crank.pin, far) if drive.slides else (far, crank.pin)))
     pin = plan.add(vel.name(crank.pin), rules.LINE_LINE, given, across, pole,
                    vel.perpendicular(crank.pivot, crank.pin))
-    plan.vector(f"V̅_{crank.pin}", pole, pin)
-    vel.points[crank.pin] = pin
-    vel.turning(crank.link, crank.pivot, crank.pin, pole, pin)
+    _driven_pin(vel, pin)
     if drive.slides:
         vel.points[far] = vel.coincident[on_link(far, body)] = given
         plan.vector(f"V̅_{far}", pole, given)
         plan.vector(f"V̅_{crank.pin}{far}", given, pin)
-        vel.turning(drive.group.links[0], crank.pin, far, pin, given)
-        vel.turns_with(body, m.frame)
+    else:
+        plan.vector(f"V̅_{{{crank.pin}{on_link(crank.pin, body)}}}", pole, given)
+    _driving_group(vel, drive, pin, given if drive.slides else pole, given)
+
+
+def _driven_pin(polygon: MotionPolygon, pin: Step) -> None:
+    """Motion of the crank pin, and how the crank turns by it."""
+    crank = polygon.positions.mechanism.crank
+    polygon.plan.vector(f"{polygon.VECTOR}_{crank.pin}", polygon.pole, pin)
+    polygon.points[crank.pin] = pin
+    polygon.turning(crank.link, crank.pivot, crank.pin, polygon.pole, pin)
+
+
+def _driving_group(polygon: MotionPolygon, drive: Drive, pin: Step, begin: Step, end: Step) -> None:
+    """How the links of the group turn that drives the crank pin; ``begin`` .. ``end`` is what is known of it at its far hinge."""
+    m, (first, body), far = polygon.positions.mechanism, drive.group.links, drive.far
+    if drive.slides:
+        polygon.turning(first, m.crank.pin, far, pin, begin)
+        polygon.turns_with(body, m.frame)
         return
-    here = on_link(crank.pin, body)
-    plan.vector(f"V̅_{{{crank.pin}{here}}}", pole, given)
-    carried = vel.coincident[here] = plan.add(vel.name(here), PARALLEL, pole, given, pin)
-    plan.vector(f"V̅_{{{here}}}", pole, carried)
-    vel.turning(body, far, crank.pin, pole, carried)
-    vel.turns_with(drive.group.links[0], body)
+    here = on_link(m.crank.pin, body)
+    carried = polygon.coincident[here] = polygon.plan.add(polygon.name(here), PARALLEL, begin, end, pin)
+    polygon.plan.vector(f"{polygon.VECTOR}_{{{here}}}", polygon.pole, carried)
+    polygon.turning(body, far, m.crank.pin, polygon.pole, carried)
+    polygon.turns_with(first, body)
 
 
 def drive_accelerations(acc: Accelerations, drive: Drive) -> None:
@@ -214,17 +226,8 @@ def drive_accelerations(acc: Accelerations, drive: Drive) -> None:
     pin = plan.add(acc.name(crank.pin), rules.LINE_LINE, end, across, centre, acc.perpendicular(crank.pivot, crank.pin))
     plan.vector(f"a̅_{{{crank.pin}{far if drive.slides else here + far}}}^τ", end, pin)
     plan.vector(f"a̅_{{{crank.pin}{crank.pivot}}}^τ", centre, pin)
-    plan.vector(f"a̅_{crank.pin}", pole, pin)
-    acc.points[crank.pin] = pin
-    acc.turning(crank.link, crank.pivot, crank.pin, pole, pin)
-    if drive.slides:
-        acc.turning(first, crank.pin, far, pin, begin)
-        acc.turns_with(body, m.frame)
-        return
-    carried = acc.coincident[here] = plan.add(acc.name(here), PARALLEL, begin, end, pin)
-    plan.vector(f"a̅_{{{here}}}", pole, carried)
-    acc.turning(body, far, crank.pin, pole, carried)
-    acc.turns_with(first, body)
+    _driven_pin(acc, pin)
+    _driving_group(acc, drive, pin, begin, end)
 
 
 def place_of_input(pos: Positions) -> Step:

@@ -20,7 +20,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import Floats, primitive
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.step import FoundNumber, Given, Plan, Rule, SearchCount, Step, symbol, value_at
-from tmm_sheets.mechanism.groups.contexts import OPPOSITE_COUPLE, ForcePlan, Load, Role, TangentialPart
+from tmm_sheets.mechanism.groups.contexts import OPPOSITE_COUPLE, ForcePlan, Held, Load, Role, TangentialPart
 from tmm_sheets.mechanism.groups.triad import BY_MOMENTS
 from tmm_sheets.mechanism.model import Drive, StructuralGroup, lettered
 from tmm_sheets.methods.linkage.accelerations import Accelerations
@@ -42,7 +42,6 @@ BESIDE_MASS = Rule("what turns with the crank beside its mass", lambda j, m, s, 
                    ("number", "number", "point", "point"), "number",
                    marked("The force of inertia of the input link itself stands for {1}·|{3}{2}|²: {name} = {0} − {1}·|{3}{2}|² = "
                           "{value} kg·m²."), unit="kg*m2")
-GIVEN_FORCE = Rule("given force vector", lambda f: f, ("force",), "force", marked("Force {name} = {value}."), unit="N")
 OPPOSITE = Rule("reaction", lambda f: -f, ("force",), "force", "{name} = −{0}.", unit="N")
 NEGATIVE = Rule("opposite number", lambda x: -x, ("number",), "number", "{name} = {value}.", beyond_paper=True, unit="1")
 ARM = Rule("arm from moments", lambda m, f: m / np.abs(f), ("number", "force"), "length",
@@ -204,12 +203,18 @@ class Kinetostatics:
         self.plans[name] = fp
         return fp
 
-    def close(self, fp: ForcePlan, j: str, other: str, tail: Step, head: Step) -> Step:
-        """Close a polygon by the reaction on link ``j`` from link ``other``."""
+    def read(self, fp: ForcePlan, j: str, other: str, tail: Step, head: Step, *, drawn: bool = True) -> Step:
+        """The reaction on link ``j`` from link ``other`` as a segment of a polygon, ``drawn`` there unless it is a side of it."""
         name = f"F{pair_index(j, other)}"
-        step = fp.between(name, tail, head)
-        fp.side(symbol(name), tail, head, unknown=True)
-        return self.reaction(j, other, step)
+        if drawn:
+            fp.plan.vector(symbol(name), tail, head)
+        return self.reaction(j, other, fp.between(name, tail, head))
+
+    def close(self, fp: ForcePlan, j: str, other: str, tail: Step, head: Step) -> Step:
+        """Close a polygon of what was laid off by the reaction on link ``j`` from link ``other``."""
+        fp.record_laid()
+        fp.side(symbol(f"F{pair_index(j, other)}"), tail, head, unknown=True)
+        return self.read(fp, j, other, tail, head, drawn=False)
 
     def react(self, link: str, on: str, at: Step, vector: Step, couple: Step | None = None) -> Step:
         """The equal and opposite force on the neighbouring link ``on`` from ``link``."""
@@ -250,39 +255,40 @@ class Kinetostatics:
         name = pair_index(j, other)
         self.arms[f"h{name}"] = self.plan.add(f"h{name}", ARM, couple, force)
 
-    def group_polygon(self, g: StructuralGroup, parts: list[Step | None], lines: list[Step], carriers: tuple[str, ...],
-                      sine: tuple[Step, ...]) -> tuple[Step, Step]:
-        """Plan of a whole group closed by two unknown forces: ``first`` .. ``last`` known parts, lines along ``u`` and ``v``.
+    def group_polygon(self, g: StructuralGroup, one: Held, two: Held, known: tuple[Step, ...] = (),
+                      between: Callable[[ForcePlan, Step], tuple[Step, Part]] | None = None) -> GroupPolygon:
+        """Plan of a whole group: from the known part of one end over the loads of its links to that of the other.
 
-        ``sine`` of the angle between these lines, where the position plan knows it better than they do.
-
-        ``carriers`` are the links outside that the two links lean on; returns the total forces from them.
+        ``known`` is the sine of the angle between both lines, where the position plan knows it better than they do; ``between``
+        lays off what lies between both ends, a third held link among it: its end, that link, and where its reaction lies.
         """
-        (i, j), (first, last), (u, v) = g.links, parts, lines
         fp = self.plan_of(g.name, g.links)
-        start = fp.begin()
-        one, two = (pair_index(link, carrier) for link, carrier in zip(g.links, carriers, strict=True))
-        after_first = start if first is None else fp.lay(start, f"F̅_{{{one}}}^τ", first)
-        split = fp.lay_loads(after_first, self.order(self.loads[i], "weight"))
-        before_last = fp.lay_loads(split, self.order(self.loads[j], "weight"))
-        tail = before_last if last is None else fp.lay(before_last, f"F̅_{{{two}}}^τ", last)
-        way = (self.limits[g.name],) if sine and g.name in self.limits else ()
-        closing = fp.plan.add("1", rules.LINE_LINE, start, u, tail, v, *sine, *way)
-        fp.side(f"F̅_{{{one}}}" + ("^n" if first is not None else ""), closing, start, unknown=True)
-        fp.record_laid()
-        fp.side(f"F̅_{{{two}}}" + ("^n" if last is not None else ""), tail, closing, unknown=True)
-        f_one = self.reaction(i, carriers[0], fp.between(f"F{one}", closing, after_first))
-        f_two = self.reaction(j, carriers[1], fp.between(f"F{two}", before_last, closing))
-        if first is not None:
-            fp.plan.vector(symbol(f"F{one}"), closing, after_first)
-        if last is not None:
-            fp.plan.vector(symbol(f"F{two}"), before_last, closing)
-        # The inner reaction closes the forces of the first link: the same drawing, one more line.
-        name = f"F{pair_index(i, j)}"
-        inner = self.reaction(i, j, fp.between(name, split, closing))
-        fp.plan.vector(symbol(name), split, closing)
-        self.opposite(j, i, inner)
-        return f_one, f_two
+        after = fp.lay_part(fp.begin(), one)
+        split = fp.lay_loads(after, self.order(self.loads[one.link], "weight"))
+        middle, third = (split, None) if between is None else between(fp, split)
+        before = fp.lay_loads(middle, self.order(self.loads[two.link], "weight"))
+        limit = (self.limits[g.name],) if known and g.name in self.limits else ()
+        closing = fp.meet(one, fp.lay_part(before, two), two, *known, *limit)
+        reactions: list[Part] = [(one, closing, after), *([third] if third else []), (two, before, closing)]
+        return GroupPolygon(fp, split, middle, closing, {held.link: self.read(
+            fp, held.link, held.other, tail, head, drawn=held.part is not None) for held, tail, head in reactions})
+
+
+Part = tuple[Held, Step, Step]
+"""A reaction of a group's polygon, from its tail to its head."""
+
+
+@dataclass(frozen=True)
+class GroupPolygon:
+    """A group's force plan: the ends of the first link's loads and of what lies behind them, the closing point, the outer
+    ``reactions`` by link.
+    """
+
+    plan: ForcePlan
+    split: Step
+    middle: Step
+    closing: Step
+    reactions: dict[str, Step]
 
 
 def _drive_plan() -> Plan:
@@ -394,14 +400,13 @@ def contact_point(pos: Positions, driver: GearForce) -> Step:
     return pos.contact
 
 
-def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: Iterable[tuple[str, str, str, Any]],
-                   carried: Any = None, recorded: Iterable[tuple[str, str | None, Callable[[Plan], Step]]] = ()) -> tuple[
+def external_loads(pos: Positions, acc: Accelerations, gravity: float,
+                   applied: Iterable[tuple[str, str | None, Callable[[Plan], Step]]] = (), carried: Any = None) -> tuple[
                        dict[str, list[Load]], dict[str, list[Step]], Plan]:
     """Weights and inertia forces of every link, N, its couples, N m, and the plan of both; ``gravity`` in m/s2.
 
-    ``applied`` are forces (name, link, point, vectors, N, shape (n,)), ``recorded`` forces and moments that record themselves on
-    the plan (link, point or None, how). ``carried`` is the moment of inertia of all that turns with the crank, kg m2, where it is
-    more than the crank's own.
+    ``applied`` are forces and moments (link, point or None, how they record themselves on the plan). ``carried`` is the moment of
+    inertia of all that turns with the crank, kg m2, where it is more than the crank's own.
     """
     m = pos.mechanism
     plan = Plan("loads", tr("External forces and forces of inertia"), "N", pos.plan.labels, search=pos.plan.search)
@@ -428,27 +433,24 @@ def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: 
             couple = plan.add(f"Mи{link.name}", COUPLE, inertia, acc.epsilon[link.name],
                               symbol=tr("Mi{link}").format(link=link.name))
             couples.setdefault(link.name, []).append(couple)
-    for name, link_name, point, vector in applied:
-        f = plan.add(name, GIVEN_FORCE, vector)
-        loads[link_name].append(Load(symbol(name), link_name, pos.points[point], f, "applied"))
-    for link_name, at_point, record in recorded:
+    for name, point, record in applied:
         step = record(plan)
-        if at_point is None:
-            couples.setdefault(link_name, []).append(step)
+        if point is None:
+            couples.setdefault(name, []).append(step)
         else:
-            loads[link_name].append(Load(symbol(step.name), link_name, pos.points[at_point], step, "applied"))
+            loads[name].append(Load(symbol(step.name), name, pos.points[point], step, "applied"))
     return loads, couples, plan
 
 
 def kinetostatics(pos: Positions, acc: Accelerations, loads: dict[str, list[Load]], couples: dict[str, list[Step]],
-                  driver: GearForce | InputForce | None, plan: Plan | None = None, friction: Friction | None = None,
+                  driver: GearForce | InputForce | None, friction: Friction | None = None,
                   search: SearchCount | None = None, limits: dict[str, Given] | None = None) -> Kinetostatics:
     """Force plans of all groups from the farthest to the crank; ``driver`` None means a pure balancing moment.
 
     ``friction`` that acts besides; ``search`` counts plans that are only an approximation; ``limits`` are known next to change
     points.
     """
-    sums = plan or Plan("moments", tr("Sums of moments"), "m", pos.plan.labels, search=search or pos.plan.search)
+    sums = Plan("moments", tr("Sums of moments"), "m", pos.plan.labels, search=search or pos.plan.search)
     work = {name: list(of_link) for name, of_link in loads.items()}
     turning = {} if friction is None else friction.couples
     couples = {link: [*couples.get(link, ()), *turning.get(link, ())] for link in {**couples, **turning}}
@@ -466,11 +468,10 @@ def _crank(k: Kinetostatics, driver: GearForce | InputForce | None) -> None:
     pivot = pos.points[c.pivot]
     total = k.moment_sum(f"ΣM{c.link}", pivot, [c.link])
     plan = k.plan_of(c.link, (c.link,))
-    first = plan.plan.add("1", rules.GIVEN, 0j)
+    first = plan.begin(1)
     reactions = [load for load in k.loads[c.link] if load.role == "reaction"]
     others = [load for load in k.loads[c.link] if load.role != "reaction"]
-    tail = plan.chain(1, first, reactions)
-    n = 1 + len(reactions)
+    tail = plan.lay_loads(first, reactions)
     known = (k.limits[TOTAL],) if TOTAL in k.limits else ()
     if not isinstance(driver, GearForce):
         k.balancing = k.plan.add("Mур", BALANCING if known else OPPOSITE_COUPLE, total, *known, symbol=tr("Mb"))
@@ -480,10 +481,8 @@ def _crank(k: Kinetostatics, driver: GearForce | InputForce | None) -> None:
         k.balancing = k.plan.add(name, DRIVING_FORCE, total, pivot, at, driver.line(c.sense), *known)
         load = Load(symbol(driver.name), c.link, at, k.balancing, "applied")
         k.loads[c.link].append(load)
-        tail = plan.chain(n, tail, [load])
-        n += 1
-    tail = plan.chain(n, tail, others)
-    k.close(plan, c.link, m.frame, tail, first)
+        tail = plan.lay_loads(tail, [load])
+    k.close(plan, c.link, m.frame, plan.lay_loads(tail, others), first)
 
 
 TOTAL = "sum of moments on the crank"

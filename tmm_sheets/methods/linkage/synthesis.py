@@ -73,7 +73,7 @@ class Synthesis:
     @cached_property
     def plan(self) -> Plan:
         """The construction, m."""
-        plan = {"geneva": _geneva, "quick return": _quick_return, "engine": _engine}[self.conditions.kind](self)
+        plan = _constructed(self)
         for step in plan if self.points else ():
             if POINTS.fullmatch(step.name.rstrip("′″")):
                 plan.lettered(step, self.called(step.name))
@@ -198,11 +198,6 @@ def _given(of: Synthesis) -> dict[str, Any]:
             ("slots", "z", ""), ("round", "", "m")) if getattr(c, name, None) is not None}
 
 
-def _rounded(plan: Plan, name: str, given: Mapping[str, Any]) -> Step:
-    """The length as it is used further on."""
-    return plan.add(f"{name}′", ROUND, plan[name], given["round"]) if "round" in given else plan[name]
-
-
 DEAD = Rule("dead position of the crank", lambda p, u, length, sign: p + sign * length * u, ("point", "direction", "length"),
             "point", marked("On the line {1} lay off the crank {2} from {0}: extreme position {name}."),
             lambda a, v: (Helper("line", a[0], v),))
@@ -227,7 +222,7 @@ QUICK_RETURN: StepTable = {
             v: (Helper("line", a[0], v),))),
     "D": ("C CB H/2 CA", "", rules.LINE_LINE),
     "l_CD": ("C D", "", rules.DISTANCE),
-    "l_CS": ("centre_ratio used", "", TIMES),
+    "l_CS": ("centre_ratio l_CD_used", "", TIMES),
 }
 ENGINE: StepTable = {
     "A": ("0", "", rules.GIVEN),
@@ -236,13 +231,13 @@ ENGINE: StepTable = {
     "H": ("mean_velocity T", "", Rule("stroke of the piston", lambda v, t: v * t / 2, ("number", "number"), "length",
             "")),
     "l_AB": ("H", "", Rule("crank from the stroke", lambda h: h / 2, ("length",), "length", "")),
-    "l_BC": ("rod_ratio crank", "", TIMES),
-    "l_BS": ("centre_ratio rod", "", TIMES),
+    "l_BC": ("rod_ratio l_AB_used", "", TIMES),
+    "l_BS": ("centre_ratio l_BC_used", "", TIMES),
     "AC": ("up", "", rules.GIVEN_DIRECTION),
-    "B′": ("A AC crank 1", "", DEAD),
-    "C′": ("B′ AC rod", "", rules.ALONG),
-    "B″": ("A AC crank -1", "", DEAD),
-    "C″": ("B″ AC rod", "", rules.ALONG),
+    "B′": ("A AC l_AB_used 1", "", DEAD),
+    "C′": ("B′ AC l_BC_used", "", rules.ALONG),
+    "B″": ("A AC l_AB_used -1", "", DEAD),
+    "C″": ("B″ AC l_BC_used", "", rules.ALONG),
 }
 GENEVA: StepTable = {
     "C": ("centre_distance", "",
@@ -260,35 +255,27 @@ GENEVA: StepTable = {
 }
 
 
-def _quick_return(of: Synthesis) -> Plan:
-    plan, given = Plan("synthesis", tr("Geometric synthesis of the slotted-link mechanism"), "m"), _given(of)
-    record(plan, "A C l_AC θ θ/2 CA CB B l_AB", QUICK_RETURN, COMMON, given=given)
-    _rounded(plan, "l_AB", given)
-    record(plan, "H H/2 D l_CD", QUICK_RETURN, given=given)
-    given["used"] = _rounded(plan, "l_CD", given)
-    if "centre_ratio" in given:
-        record(plan, "l_CS", QUICK_RETURN, given=given)
-        _rounded(plan, "l_CS", given)
-    return plan
+KINDS: dict[str, tuple[str, tuple[StepTable, ...], str]] = {
+    "quick return": (marked("Geometric synthesis of the slotted-link mechanism"), (QUICK_RETURN, COMMON),
+                     "A C l_AC θ θ/2 CA CB B l_AB! H H/2 D l_CD! l_CS!"),
+    "engine": (marked("Geometric synthesis of the slider-crank mechanism"), (ENGINE,),
+               "A T H l_AB! l_BC! l_BS! AC B′ C′ B″ C″"),
+    # The pin enters a slot along it, square to the crank: no blow. B is where it enters.
+    "geneva": (marked("Geometric synthesis of the Geneva mechanism"), (GENEVA, COMMON), "A C l_AC CA β CB B l_AB! l_BC h r_f"),
+}
+"""Of each kind the title, the tables, and the steps in their order; a length with ! is rounded where that is asked for."""
+CENTRES = ("l_CS", "l_BS")
+"""Lengths to a centre of mass, where its ratio is given."""
 
 
-def _engine(of: Synthesis) -> Plan:
-    plan, given = Plan("synthesis", tr("Geometric synthesis of the slider-crank mechanism"), "m"), _given(of)
-    record(plan, "A T H l_AB", ENGINE, given=given)
-    given["crank"] = _rounded(plan, "l_AB", given)
-    record(plan, "l_BC", ENGINE, given=given)
-    given["rod"] = _rounded(plan, "l_BC", given)
-    if "centre_ratio" in given:
-        record(plan, "l_BS", ENGINE, given=given)
-        _rounded(plan, "l_BS", given)
-    record(plan, "AC B′ C′ B″ C″", ENGINE, given=given)
-    return plan
-
-
-def _geneva(of: Synthesis) -> Plan:
-    """The pin enters a slot along it, square to the crank: no blow. B is where it enters."""
-    plan, given = Plan("synthesis", tr("Geometric synthesis of the Geneva mechanism"), "m"), _given(of)
-    record(plan, "A C l_AC CA β CB B l_AB l_BC", GENEVA, COMMON, given=given)
-    _rounded(plan, "l_AB", given)
-    record(plan, "h r_f", GENEVA, given=given)
+def _constructed(of: Synthesis) -> Plan:
+    """The construction of a kind, step by step."""
+    title, tables, names = KINDS[of.conditions.kind]
+    plan, given = Plan("synthesis", tr(title), "m"), _given(of)
+    for name, rounded in ((name.rstrip("!"), name.endswith("!")) for name in names.split()):
+        if name in CENTRES and "centre_ratio" not in given:
+            continue
+        given[f"{name}_used"] = found = record(plan, name, *tables, given=given)
+        if rounded and "round" in given:
+            given[f"{name}_used"] = plan.add(f"{name}′", ROUND, found, given["round"])
     return plan

@@ -9,7 +9,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from time import perf_counter
 from typing import Any, ClassVar, cast
 
 import numpy as np
@@ -319,7 +318,7 @@ class Watched:
         if plans.positions.chosen:
             return plans.positions
         steps = list(plans.positions.plan)
-        done = dict(zip(map(id, steps), self._done(Replay(steps, [plans.row]), phi), strict=True))
+        done = dict(zip(map(id, steps), Replay(steps, [plans.row])([phi], self.mechanism.search(self.purpose)), strict=True))
         return replace(plans.positions, angle=phi, value=lambda step: done[id(step)])
 
     def _of(self, pick: Callable[[_Plans], Step]) -> OfAngles:
@@ -337,21 +336,12 @@ class Watched:
                 replay = None if plans.positions.chosen else found  # those are chosen by the angles they are recorded for
             else:
                 found = replay
-            (value,) = self._done(found, phi)
+            (value,) = found([phi], self.mechanism.search(self.purpose))
             if len(known) == REMEMBERED:
                 known.clear()
             known[asked] = np.broadcast_to(value, np.shape(phi))
             return known[asked]
 
-        return values
-
-    def _done(self, replay: Replay, phi: Any) -> list[Any]:
-        """Values at crank angles, counted."""
-        begin = perf_counter()
-        values = replay([phi])
-        tally = self.mechanism.search(self.purpose)
-        assert tally is not None
-        tally.again(len(replay), perf_counter() - begin)
         return values
 
     def _plans(self, phi: Any) -> _Plans:

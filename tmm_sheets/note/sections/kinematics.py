@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction import expression
-from tmm_sheets.construction.digits import shown
+from tmm_sheets.construction.equation import shown
 from tmm_sheets.construction.formula import Node, Sign, Underlined, Words, joined, letters, row
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.rules import GIVEN, LINE_LINE, TURN

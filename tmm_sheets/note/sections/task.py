@@ -9,7 +9,7 @@ from math import degrees, isclose
 from typing import Any
 
 from tmm_sheets import results
-from tmm_sheets.construction.digits import read
+from tmm_sheets.construction.equation import read
 from tmm_sheets.construction.formula import letters_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.meanings import meaning_of

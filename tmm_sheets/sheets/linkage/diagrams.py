@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from tmm_sheets.methods.linkage.loads import Applied
-    from tmm_sheets.methods.linkage.motion import Output
+    from tmm_sheets.methods.linkage.study import Output
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.views import ViewPlace
 

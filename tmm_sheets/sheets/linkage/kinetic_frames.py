@@ -20,8 +20,8 @@ from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
-    from tmm_sheets.mechanism.groups.contexts import ForcePlan, Leg, Load, OuterReaction
-    from tmm_sheets.mechanism.model import StructuralGroup
+    from tmm_sheets.mechanism.groups.contexts import ForcePlan, Load
+    from tmm_sheets.mechanism.model import Leg, OuterReaction, StructuralGroup
     from tmm_sheets.methods.linkage.forces import Kinetostatics
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.methods.linkage.zhukovsky import Lever
