@@ -11,7 +11,7 @@ OLDEST := .venv-oldest
 SOURCES := $(shell find tmm_sheets templates variants -type f -not -name '*.pyc' 2>/dev/null)
 
 .DEFAULT_GOAL := sheets
-.PHONY: help sheets test trials lint types oldest note wheel-test gallery gallery-check note-check gold messages docs figures picture pictures film site clean distclean
+.PHONY: help sheets test trials attack lint types oldest note wheel-test gallery gallery-check note-check gold messages docs figures picture pictures film site clean distclean
 
 sheets: $(OUT)/sheet1.pdf  ## the sheets of PROJECT (default lugansk/shaper) in out/; this is what plain "make" does
 
@@ -23,6 +23,9 @@ test: lint  ## everything the tests prove: ruff, mypy beside pytest
 
 trials: $(VENV)/.tested  ## the long tests: every project, every language, random students, photographs, kills, clusters
 	$(PYTEST) -m 'trial or hypothesis' --hypothesis-profile many
+
+attack: $(VENV)/.tested  ## odd files, words and arguments at every door, counts by kind; CASES=300 SEED=0
+	nice $(BIN)/python -m tests.attack --cases $(or $(CASES),300) --seed $(or $(SEED),0)
 
 lint: $(VENV)/.tested  ## style of the code (ruff)
 	$(BIN)/ruff check .

@@ -64,6 +64,48 @@ def test_numbers_are_those_of_solve(p):
         p.numbers("reducer")
 
 
+HUGE, LONG = 10**400, "a" * 5000
+STRANGE = {
+    "open": (tmm_sheets.open, ("", "\0", LONG, "..", "a\nb", Path("x"))),
+    "language": (lambda p, v: tmm_sheets.open("lugansk/cam_flat", language=v), ("x", "\0", LONG)),
+    "student": (lambda p, v: tmm_sheets.open("lugansk/cam_flat", student=v), ("\0", LONG, "🙂")),
+    "new": (lambda p, v: tmm_sheets.new("m", gear=v), (b"x", object(), Path("x"), [None], 1j, HUGE, {}, np.zeros((2, 2)))),
+    "with a value": (lambda p, v: p.with_(crank__length=v), (b"x", [1j], [None], HUGE, -1, float("nan"), "", {}, np.array(["x"]))),
+    "with a key": (lambda p, v: p.with_({v: 1}), ("", "\0", LONG, "a[" + "9" * 5000 + "]", "crank.length.x", "🙂")),
+    "numbers": (lambda p, v: p.numbers(v), ("", "x", LONG, "🙂")),
+    "one": (lambda p, v: p.numbers("positions")[v], ("", "x", LONG)),
+    "phi": (lambda p, v: p.numbers("positions", phi=v), (HUGE, "x", [[1], [2, 3]], 1j)),
+    "phi_deg": (lambda p, v: p.numbers("positions", phi_deg=v), (HUGE, "x")),
+    "positions": (lambda p, v: p.numbers("positions", positions=v), (0, -1, HUGE, float("nan"), float("inf"))),
+    "why": (lambda p, v: p.why(v), ("", "x", LONG, "\0", "cam")),
+    "protocol": (lambda p, v: p.protocol(v), ("", "x", "\0")),
+    "sheet": (lambda p, v: p.sheet(v), (0, -1, HUGE, 9)),
+    "view": (lambda p, v: p.view(v), ("\0", "there is no such")),
+    "plan": (lambda p, v: p.animate((4,), v), ("x", "\0")),
+    "folder": (lambda p, v: p.build(v, formats=["svg"], sheets=[4]), ("\0", LONG, "ftp:x")),
+    "format": (lambda p, v: p.build("o", formats=[v]), ("", "x", "\0", "..", LONG)),
+    "sheets": (lambda p, v: p.build("o", formats=["svg"], sheets=[v]), (0, -1, HUGE)),
+    "compare": (lambda p, v: p.compare(v), ("", LONG, "x.dxf", "..")),
+    "template": (lambda p, v: p.template(v), ("\0", LONG)),
+    "save": (lambda p, v: p.save(v), ("", "\0", LONG)),
+    "picture": (lambda p, v: p.sheet(4).rendered(v), ("", "x", "\0", "..")),
+    "dpi": (lambda p, v: p.sheet(4).rendered("png", dpi=v), (0, -1, 1e9, float("nan"))),
+    "least": (lambda p, v: p.optimise({"crank.length": "70..90 mm"}, v), ("x", "\0", "(" * 300, LONG)),
+    "vary": (lambda p, v: p.optimise([v], "max positions.points.C.x"), ("", "x", "crank.length=2..1 mm", "crank.length=0..inf m")),
+    "tries": (lambda p, v: p.optimise({"crank.length": "70..90 mm"}, "max positions.points.C.x", tries=v), (-1, HUGE)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("of", "n"), [(of, n) for of, (_, values) in STRANGE.items() for n in range(len(values))])
+def test_an_odd_value_is_refused_in_words(p, of, n, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    call, values = STRANGE[of]
+    with pytest.raises((tmm_sheets.BadInput, tmm_sheets.CannotBuild), match=r"\w"):
+        call(*((values[n],) if of == "open" else (p, values[n])))
+    assert [*tmp_path.iterdir()] == []
+
+
+
 def test_columns_are_those_of_the_table(p, tmp_path):
     from tmm_sheets.result_files import write_csv
 

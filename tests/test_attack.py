@@ -7,7 +7,7 @@ import tomllib
 
 import pytest
 
-from tests.attack import SMALL, SOURCES, case, fallen
+from tests.attack import DOORS, SMALL, SOURCES, case, entered, fallen
 from tests.few import few
 from tests.project_files import EVEN, FLYWHEEL, FORCE, GEAR, MASS, MOMENT, SLIDER, WORKING, from_file, project, read
 from tmm_sheets import protocols, results
@@ -22,6 +22,13 @@ LOADED = (SLIDER, EVEN, FORCE)
 def test_nothing_falls_over(n):
     what, text = case(SMALL, random.Random(n))
     assert list(fallen(text)) == [], f"{what}\n{text}"
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_no_door_falls_in(door, tmp_path, monkeypatch):
+    """Some of the cases of ``python -m tests.attack``."""
+    monkeypatch.chdir(tmp_path)
+    assert {entered(door, n) for n in few(range(30), *range(4))} <= {"done", "refused"}
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.few import few
-from tmm_sheets import apart, catalogue, kept, terminal
+from tmm_sheets import apart, catalogue, kept, summary, terminal
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare.cad import cad_file
 from tmm_sheets.errors import BadInput, CannotBuild
@@ -210,3 +210,19 @@ def test_lines_in_one_place_and_beyond_all_measure(tmp_path):
     assert len(ink.spaces[0].strokes) == 2 + cad_file.MOST_COPIES
     assert "left out, with coordinates that are no numbers: 3 entities" in ink.notes
     assert f"left out, in the place of {cad_file.MOST_COPIES} others: {3000 - cad_file.MOST_COPIES} lines" in ink.notes
+
+
+def test_what_led_to_a_defect_is_kept(desk, monkeypatch, capsys):
+    def fall(*_):
+        raise KeyError("here")
+
+    Path("mine.toml").write_text(SCHEME, encoding="utf-8")
+    monkeypatch.setattr(summary, "text", fall)
+    assert run(["show", "mine.toml"]) == 1
+    assert "what led to it is kept in mine.defect.txt" in capsys.readouterr().err
+    told = Path("mine.defect.txt").read_text(encoding="utf-8")
+    assert told.startswith("tmm-sheets show mine.toml\n")
+    assert "KeyError: 'here'" in told
+    assert told.endswith(SCHEME)
+    assert run(["show", CAM]) == 1
+    assert "kept" not in capsys.readouterr().err

@@ -21,6 +21,7 @@ def main() -> NoReturn:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", "400000000")  # of formats whose size nobody else can tell beforehand
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # or it looks for some in every package that is installed
     terminal.settle()
     for name in ("SIGTERM", "SIGHUP"):  # what is half-written is cleaned up, as after Ctrl-C; nohup stays nohup
         number = getattr(signal, name, None)
@@ -106,8 +107,26 @@ def _carried_out(arguments: list[str]) -> int:
     except MemoryError:
         return _say(tell("not enough memory; ask for fewer positions"), CANNOT_BUILD)
     except Exception as e:
-        hint = tell("this is a defect of the program; TMM_SHEETS_TRACEBACK=1 shows where it happened")
-        return _say(f"{told_of(e)}\n    {hint}", CANNOT_BUILD)
+        hints = (tell("this is a defect of the program; TMM_SHEETS_TRACEBACK=1 shows where it happened"), _kept(arguments, e))
+        return _say("\n    ".join(filter(None, (told_of(e), *hints))), CANNOT_BUILD)
+
+
+def _kept(arguments: list[str], e: Exception) -> str:
+    """That the command, the file that it was given and where it fell over are kept beside that file; empty where nothing is."""
+    import traceback
+    from contextlib import suppress
+    from pathlib import Path
+
+    from tmm_sheets import files, quoting
+    from tmm_sheets.words import tell
+
+    with suppress(OSError, ValueError):
+        file = next((path for path in map(Path, arguments) if path.suffix == ".toml" and path.is_file()), None)
+        if file is not None and not files.confined():
+            kept, lines = file.with_suffix(".defect.txt"), "".join(traceback.format_exception(e))
+            kept.write_text(f"{quoting.command(*arguments)}\n\n{lines}\n{file.read_text(encoding='utf-8')}", encoding="utf-8")
+            return tell("what led to it is kept in {file}").format(file=kept)
+    return ""
 
 
 def _say(message: str, status: int) -> int:

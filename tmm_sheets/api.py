@@ -6,13 +6,14 @@ The commands are made of the same.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, wraps
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
 from tmm_sheets import catalogue, words
 from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.files import MOST_POSITIONS
 from tmm_sheets.project import Project
 from tmm_sheets.task import edited_text, title_entries
 from tmm_sheets.task import variant as variants
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 __all__ = ["BadInput", "CannotBuild", "Findings", "Opened", "Optimised", "Page", "Said", "compared", "new", "open", "projects"]
 
+P = ParamSpec("P")
+T = TypeVar("T")
 ALONE = ("gear", "reducer", "train", "cam")
 """Parts that follow from their own tables and from nothing else of the file."""
 HEIGHT = 720
@@ -77,6 +80,17 @@ def new(name: str = "mechanism", /, *, language: str = "", **tables: Any) -> Ope
 def projects(word: str = "") -> tuple[ShippedProject, ...]:
     """The shipped projects, or those with a word in their names or titles."""
     return catalogue.found(word) if word else catalogue.entries()
+
+
+def _on_paper(method: Callable[Concatenate[Opened, P], T]) -> Callable[Concatenate[Opened, P], T]:
+    """Decorator: what is said by a method of a project is in the language of its sheets."""
+
+    @wraps(method)
+    def spoken(self: Opened, /, *args: P.args, **named: P.kwargs) -> T:
+        with words.on_paper(self.language):
+            return method(self, *args, **named)
+
+    return spoken
 
 
 class Opened:
@@ -141,6 +155,7 @@ class Opened:
 
     # --- numbers ----------------------------------------------------------------------------------------------------------
 
+    @_on_paper
     def numbers(self, *parts: str, phi: Any = None, phi_deg: Any = None, positions: int | None = None) -> Numbers:
         """Numbers of some parts, of all that the project has unless told, as arrays by their paths.
 
@@ -167,37 +182,39 @@ class Opened:
 
         if sum(x is not None for x in (phi, phi_deg, positions)) > 1:
             raise BadInput(tell("give one of phi, phi_deg and positions"))
-        if positions is not None and positions < 1:
-            raise BadInput(tell("positions: expected a number from 1 on, not {n}").format(n=positions))
-        at = phi if phi_deg is None else np.radians(np.asarray(phi_deg, dtype=float))
-        angles = None if at is None else tuple(np.atleast_1d(np.asarray(at, dtype=float)).tolist())
+        _check_count("positions", positions, 1)
+        try:
+            at = phi if phi_deg is None else np.radians(np.asarray(phi_deg, dtype=float))
+            angles = None if at is None else tuple(np.atleast_1d(np.asarray(at, dtype=float)).tolist())
+        except (TypeError, ValueError, OverflowError) as e:
+            raise BadInput(tell("phi: expected angles in a row: {why}").format(why=e)) from None
         refused: dict[str, CannotBuild] = {}
-        with self._on_paper():
-            told = results.told(self.project, parts or None, phi=angles, positions=positions, refused=refused)
-            return Numbers(told, refused)
+        told = results.told(self.project, parts or None, phi=angles, positions=positions, refused=refused)
+        return Numbers(told, refused)
 
     @cached_property
+    @_on_paper
     def record(self) -> dict[str, Any]:
         """The record: every number with its step, every mark with what it shows, as docs/record.md tells."""
         from tmm_sheets.record import recording
 
-        with self._on_paper():
-            return recording.record(self.project)[0]
+        return recording.record(self.project)[0]
 
+    @_on_paper
     def why(self, result: str) -> Said:
         """The steps from the given numbers to a result, a line each."""
         from tmm_sheets.record import why
 
-        with self._on_paper():
-            return Said("\n".join(why.lines(self.project, result)))
+        return Said("\n".join(why.lines(self.project, result)))
 
+    @_on_paper
     def protocol(self, plan: str | None = None) -> Said:
         """The construction steps of the sheets, or of one plan, as sentences."""
         from tmm_sheets import protocols
 
-        with self._on_paper():
-            return Said("\n".join(protocols.lines(self.project, plan)))
+        return Said("\n".join(protocols.lines(self.project, plan)))
 
+    @_on_paper
     def optimise(self, vary: Mapping[str, str] | Iterable[str], least: str = "", *, most: str = "", subject_to: Iterable[str] = (),
                  positions: int | None = None, tries: int | None = None, say: Callable[[int], None] = lambda n: None) -> Optimised:
         """Look for numbers of the file that make a wish least, or greatest, within bounds (docs/optimise.md).
@@ -224,15 +241,17 @@ class Opened:
 
         if bool(least) == bool(most):
             raise BadInput(tell("give either least or most"))
+        _check_count("positions", positions, 2)
+        _check_count("tries", tries, 1)
         some = [f"{name.replace('__', '.')}={spread}" for name, spread in vary.items()] if isinstance(vary, Mapping) else [*vary]
-        with self._on_paper():
-            found = optimum.optimum(self.project, lambda changes: self.with_(changes).project, some, least or most, most=bool(most),
-                                    subject_to=subject_to, positions=positions or optimum.POSITIONS,
-                                    tries=tries or optimum.TRIES, say=say)
+        found = optimum.optimum(self.project, lambda changes: self.with_(changes).project, some, least or most, most=bool(most),
+                                subject_to=subject_to, positions=positions or optimum.POSITIONS,
+                                tries=tries or optimum.TRIES, say=say)
         return Optimised(found, self.with_(found.changes))
 
     # --- sheets -----------------------------------------------------------------------------------------------------------
 
+    @_on_paper
     def check(self) -> tuple[str, ...]:
         """Assemble everything; what no pencil can draw and what else is to be said, a line each.
 
@@ -244,21 +263,21 @@ class Opened:
         from tmm_sheets.sheets import composing, composition
 
         project, variant = self.project, self.project.variant
-        with self._on_paper():
-            project.check()
-            composition.check(project)
-            every = range(1, len(project.sheets) + 1)
-            told: list[object] = [*composing.shortened(project), *composition.left_out(project, every),
-                                  *composition.crowded(project, every)]
-            if variant.crank is not None:
-                from tmm_sheets import summary
-                from tmm_sheets.sheets.components import flat_crossings
+        project.check()
+        composition.check(project)
+        every = range(1, len(project.sheets) + 1)
+        told: list[object] = [*composing.shortened(project), *composition.left_out(project, every),
+                              *composition.crowded(project, every)]
+        if variant.crank is not None:
+            from tmm_sheets import summary
+            from tmm_sheets.sheets.components import flat_crossings
 
-                told += (*flat_crossings.lines(project), *project.dead_positions, *summary.swing(project), *summary.signs(project),
-                         *summary.given(project))
-            told += project.flywheel.remarks if variant.flywheel is not None else ()
-            return tuple(map(str, told))
+            told += (*flat_crossings.lines(project), *project.dead_positions, *summary.swing(project), *summary.signs(project),
+                     *summary.given(project))
+        told += project.flywheel.remarks if variant.flywheel is not None else ()
+        return tuple(map(str, told))
 
+    @_on_paper
     def sheet(self, number: int) -> Picture:
         """A sheet; a notebook shows it.
 
@@ -272,18 +291,18 @@ class Opened:
         from tmm_sheets.output.view_pictures import Picture
         from tmm_sheets.sheets import sheet
 
-        with self._on_paper():
-            (n,) = self.project.variant.chosen((number,))
-            return Picture(sheet.compose(self.project, n))
+        (n,) = self.project.variant.chosen((number,))
+        return Picture(sheet.compose(self.project, n))
 
     @property
+    @_on_paper
     def scheme(self) -> Picture:
         """How the mechanism is understood: its plan of positions."""
         from tmm_sheets.output import view_pictures
 
-        with self._on_paper():
-            return view_pictures.scheme(self.project)
+        return view_pictures.scheme(self.project)
 
+    @_on_paper
     def view(self, name: str, position: int | str = "") -> Picture:
         """The first view that shows a plan (``accelerations``) or has a name in its title, of a position where one is told.
 
@@ -294,18 +313,18 @@ class Opened:
         """
         from tmm_sheets.output import view_pictures
 
-        with self._on_paper():
-            return view_pictures.named(self.project, name, str(position))
+        return view_pictures.named(self.project, name, str(position))
 
+    @_on_paper
     def animate(self, sheets: Iterable[int] = (), plan: str = "") -> Page:
         """The living page, in which plans are drawn, turned, changed and asked; a notebook shows it.
 
         ``sheets`` are those that are in it, all unless told; it opens with ``plan``.
         """
         from tmm_sheets.living import page
-        with self._on_paper():
-            return Page(page.page(self.project, self.project.variant.chosen(sheets), plan)[0])
+        return Page(page.page(self.project, self.project.variant.chosen(sheets), plan)[0])
 
+    @_on_paper
     def build(self, folder: Path | str, *, formats: Sequence[str] = ("dxf", "pdf"), sheets: Iterable[int] = (),
               force: bool = False) -> tuple[Path, ...]:
         """Write the sheets into a folder; what is current is not made again.
@@ -318,14 +337,14 @@ class Opened:
         from tmm_sheets.output import building
 
         order = building.Order(tuple(sheets), tuple(formats), force=force, language=self.language)
-        with self._on_paper():
-            built = building.build(self.project.variant, order, order.outlet(Path(folder)))
+        built = building.build(self.project.variant, order, order.outlet(Path(folder)))
         if built.refused is not None:
             raise built.refused
         return built.paths
 
     # --- what was drawn by hand -------------------------------------------------------------------------------------------
 
+    @_on_paper
     def compare(self, file: Path | str, sheet: int | None = None, *, kind: Kind | None = None, views: Path | None = None,
                 pencil: float = 0.25, reading: float = 0.5, read_numbers: bool = False) -> Findings:
         """What a drawing has wrong: a table of measured numbers (.csv), a CAD drawing (.dxf), a photograph.
@@ -352,10 +371,10 @@ class Opened:
         """
         path = Path(file)
         by_name: Kind = {".csv": "measured", ".dxf": "dxf"}.get(path.suffix.lower(), "image")  # type: ignore[assignment]
-        with self._on_paper():
-            report = compared(self.project, kind or by_name, path, sheet, views, pencil, reading, read_numbers)
+        report = compared(self.project, kind or by_name, path, sheet, views, pencil, reading, read_numbers)
         return Findings(report)
 
+    @_on_paper
     def template(self, folder: Path | str = ".", everything: bool = False) -> Path:
         """Write a table to fill in with what is measured on one's own sheets: the main numbers, or ``everything`` that can be.
 
@@ -367,14 +386,10 @@ class Opened:
         from tmm_sheets import files
         from tmm_sheets.compare.measured import measured_lengths
 
-        with self._on_paper():
-            report = measured_lengths.template(self.project, Path(folder), everything, lambda what: None)
+        report = measured_lengths.template(self.project, Path(folder), everything, lambda what: None)
         made = {Path(folder) / name: data for name, data in report.files.items()}
         files.write_all(made)
         return next(iter(made))
-
-    def _on_paper(self) -> Any:
-        return words.on_paper(self.language)
 
 
 def compared(project: Project, kind: Kind, path: Path, sheet: int | None = None, views: Path | None = None, pencil: float = 0.25,
@@ -465,6 +480,12 @@ class Said(str):
 
     def __repr__(self) -> str:
         return str(self)
+
+
+def _check_count(name: str, n: int | None, least: int) -> None:
+    if n is not None and not least <= n <= MOST_POSITIONS:
+        said = tell("{name}: expected a number from {least} to {most}, not {n}")
+        raise BadInput(said.format(name=name, least=least, most=MOST_POSITIONS, n=n))
 
 
 def _framed(page: str) -> str:

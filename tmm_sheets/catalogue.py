@@ -91,7 +91,7 @@ def read(project: str, corrected: bool = False) -> Variant:
 
 def is_shipped(project: str) -> bool:
     """Whether a project is meant by a shipped name, not by a path."""
-    return (families.folder_of(project) is not None and not project.endswith(SUFFIX)) or project in _files()
+    return (not project.endswith(SUFFIX) and families.folder_of(project) is not None) or project in _files()
 
 
 def located(project: str) -> Path:

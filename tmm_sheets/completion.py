@@ -23,6 +23,7 @@ from click.shell_completion import (
     split_arg_string,
 )
 
+from tmm_sheets import catalogue
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.quoting import PROGRAM
 
@@ -192,8 +193,6 @@ def _begun(words: Iterable[tuple[str, str] | str], incomplete: str) -> Items:
 
 def projects(context: click.Context, incomplete: str) -> Items:
     """Shipped names, project files, and folders on the way to such files."""
-    from tmm_sheets import catalogue
-
     names = () if incomplete.startswith((".", "/", "~")) else catalogue.shipped()
     return _begun(names, incomplete) + _paths(incomplete, (catalogue.SUFFIX,))
 
@@ -220,20 +219,13 @@ def _paths(incomplete: str, suffixes: Sequence[str], folders: bool = True) -> It
     return [CompletionItem(path) for path in found]
 
 
-def files(context: click.Context, incomplete: str) -> Items:
-    """Any file: the shell knows them."""
-    return [CompletionItem(incomplete, type="file")]
-
-
-def folders(context: click.Context, incomplete: str) -> Items:
-    """Any folder: the shell knows them."""
-    return [CompletionItem(incomplete, type="dir")]
+def _of_shell(kind: str) -> Completer:
+    """Any file, or any folder: the shell knows them."""
+    return lambda context, incomplete: [CompletionItem(incomplete, type=kind)]
 
 
 def families(context: click.Context, incomplete: str) -> Items:
     """Families of shipped projects."""
-    from tmm_sheets import catalogue
-
     return _begun(dict.fromkeys((*(name.partition("/")[0] for name in catalogue.shipped()), "all")), incomplete)
 
 
@@ -320,7 +312,7 @@ def _project(context: click.Context) -> Project | None:
     name = name[0] if isinstance(name, tuple | list) and name else name
     if not name:
         return None
-    from tmm_sheets import catalogue, words
+    from tmm_sheets import words
     from tmm_sheets.project import Project
 
     try:
@@ -337,7 +329,7 @@ _BY_NAME: dict[str, Completer] = {
 }
 _BY_METAVAR: dict[str, Completer] = {
     "PROJECT": projects, "NAME=A..B": varied, "WISH": wished, "BOUND": wished,
-    "PROJECT|FILE": plots, "PLAN": plans, "FILE": files, "DIR": folders, "FOLDER": folders,
+    "PROJECT|FILE": plots, "PLAN": plans, "FILE": _of_shell("file"), "DIR": _of_shell("dir"), "FOLDER": _of_shell("dir"),
 }
 
 

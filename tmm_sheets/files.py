@@ -29,9 +29,11 @@ LONG = 86_400.0
 """Seconds after which a passing file belongs to nobody, whatever its name says."""
 LARGEST = 500_000_000
 """Bytes of the largest file that is read."""
-URL = re.compile(r"([a-z][a-z0-9+.-]+):/+")
+MOST_POSITIONS = 1_000_000
+"""Rows of the largest table that is written: positions of a turn that are computed, or numbers that are tried, at most."""
+URL = r"([a-z][a-z0-9+.-]+):/+"
 """How a place in an object store begins; one letter is a drive of Windows."""
-_ELSEWHERE = re.compile(r"([a-z][a-z0-9+.-]*)?:", re.IGNORECASE)
+_ELSEWHERE = r"([A-Za-z][A-Za-z0-9+.-]*)?:"
 """How a place begins that some system takes for one on another drive, or on another machine."""
 ENDINGS = {"dxf": "dxf", "pdf": "pdf", "svg": "svg", "png": "png", "hpgl": "plt"}
 """Formats of drawings, each written by the module of its name in ``backends``, and what names of their files end in."""
@@ -41,6 +43,18 @@ _SPECIAL = (
     (stat.S_ISCHR, marked("expected a file, this is a device")), (stat.S_ISBLK, marked("expected a file, this is a device")),
 )  # fmt: skip
 """What a name may stand for that is no file, and no folder either."""
+
+
+def check_format(form: str) -> None:
+    """Refuse what is no format of drawings.
+
+    Raises
+    ------
+    BadInput
+        with those that there are.
+    """
+    if form not in ENDINGS:
+        raise BadInput(tell("'{part}' is not one of {known}").format(part=form, known=", ".join(ENDINGS)))
 
 
 def confine(root: Path) -> None:
@@ -94,7 +108,11 @@ def check_file(path: Path) -> None:
     OSError
         when it is a pipe, a device or a socket, or cannot be looked at.
     """
-    _refuse_special(path, os.stat(path).st_mode)
+    try:
+        mode = os.stat(path).st_mode
+    except ValueError:  # a name that no file can have
+        raise OSError(errno.ENOENT, os.strerror(errno.ENOENT), str(path)) from None
+    _refuse_special(path, mode)
 
 
 def _refuse_special(path: Path, mode: int) -> None:
@@ -282,9 +300,11 @@ def refuse_elsewhere(path: Path) -> None:
         when it is; a drive is a place where systems have drives.
     """
     told = path.as_posix()
-    if URL.match(told):
-        raise BadInput(Problem(tell("only build and roster write into an object store"), URL.sub(r"\1://", told)))
-    if not path.drive and _ELSEWHERE.match(told):
+    if "\0" in told:
+        raise BadInput(_unwritable(path, OSError(errno.EINVAL, os.strerror(errno.EINVAL))))
+    if re.match(URL, told):
+        raise BadInput(Problem(tell("only build and roster write into an object store"), re.sub(URL, r"\1://", told)))
+    if not path.drive and re.match(_ELSEWHERE, told):
         raise BadInput(Problem(tell("expected a folder or a file here, not one of another drive or machine"), told,
                                hint=tell("an object store is called as in s3://bucket/folder; write the whole path of a folder "
                                          "that has such a name")))
@@ -299,7 +319,7 @@ def _unwritable(path: Path, e: OSError) -> Problem:
     )
 
 
-_RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9¹²³]|lpt[0-9¹²³]|conin\$|conout\$) *(\..*)?", re.IGNORECASE)
+_RESERVED = r"(?i:con|prn|aux|nul|com[0-9¹²³]|lpt[0-9¹²³]|conin\$|conout\$) *(\..*)?"
 LONGEST_NAME = 200
 """Bytes of the longest name that is made of a text: systems take 255."""
 
@@ -312,7 +332,7 @@ def name_of(text: str, spaced: bool = False) -> str:
     """
     signs, ends = (r'[\\/:*?"<>|\x00-\x1f]+', " .-_") if spaced else (r"[^\w@.+=-]+", "-.")
     name = re.sub(signs, "-", text).strip(ends).encode()[:LONGEST_NAME].decode(errors="ignore").strip(ends)
-    return re.sub(r"^([^.]*)", r"\1_", name) if _RESERVED.fullmatch(name) else name
+    return re.sub(r"^([^.]*)", r"\1_", name) if re.fullmatch(_RESERVED, name) else name
 
 
 def folder_name(stem: str) -> str:

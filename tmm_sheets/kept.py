@@ -8,11 +8,12 @@ Those not read for longest go when all together are too large.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from functools import cache
 from pathlib import Path
+from typing import Any, TypeVar
 from zlib import crc32
 
 FOLDER = "TMM_SHEETS_CACHE"
@@ -30,6 +31,7 @@ OTHERS = 0o022
 LEFT = 86_400.0
 """Seconds after which such a file belongs to nobody."""
 
+T = TypeVar("T")
 _used = ContextVar("used", default=True)
 
 
@@ -95,6 +97,16 @@ def read(name: str) -> bytes | None:
     with suppress(OSError):
         os.utime(path)  # what is read stays longer
     return data[at:]
+
+
+def taken(data: bytes | None, read: Callable[[Any], T]) -> T | None:
+    """What ``read`` makes of JSON that was kept; None where it is none, or another one than is written today."""
+    import json
+
+    try:
+        return read(json.loads(data or b""))
+    except (ValueError, TypeError, LookupError, AttributeError, ArithmeticError, StopIteration, RecursionError):
+        return None
 
 
 def write(name: str, content: bytes) -> None:

@@ -10,7 +10,6 @@ import json
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import suppress
 from functools import cache
 from hashlib import blake2b
 from importlib.util import find_spec
@@ -52,10 +51,8 @@ def maker() -> str:
 def _fingerprints() -> tuple[str, str]:
     there, latest = _looked_at()
     name = fingerprint("program", "\n".join(there))
-    known = kept.read(name)
-    with suppress(ValueError, TypeError, RecursionError):
-        own, whole = json.loads(known or b"")
-        return str(own), str(whole)
+    if known := kept.taken(kept.read(name), lambda tree: (str(tree[0]), str(tree[1]))):
+        return known
     from importlib.metadata import version
 
     own = fingerprint(__version__, *(part for path in _files() for part in (os.path.basename(path), Path(path).read_bytes())))

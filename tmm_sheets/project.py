@@ -412,6 +412,12 @@ class Project:
         return cam(self._section("cam"))
 
     @property
+    def made(self) -> tuple[str, ...]:
+        """Parts that somebody has asked for."""
+        made = vars(self)
+        return tuple(part for part in self.parts if part in (vars(made.get("study", self)) if part in LINKAGE else made))
+
+    @property
     def plans(self) -> dict[str, dict[str, Plan] | None]:
         """Plans of every part by their names, in the order of construction; None for a part that nobody has asked for."""
         made = vars(self)

@@ -327,29 +327,26 @@ def _all(study: Study, steps: Mapping[str, Step], part: Part = "") -> dict[str, 
     return {name: Spread(step, part, (), len(study.labels)) for name, step in steps.items()}
 
 
-def _special(study: Study, steps: Mapping[str, Step]) -> dict[str, Any]:
-    """Assur's special points of groups of class III, where there are some."""
-    return {"special": _all(study, steps)} if steps else {}
+def _moving(study: Study, some: dict[str, Mapping[str, Step]], **there: Mapping[str, Step]) -> dict[str, Any]:
+    """Steps by their names, without those of the frame; where ``there`` are some, these too."""
+    named = some | {key: steps for key, steps in there.items() if steps}
+    return {key: _all(study, {name: step for name, step in steps.items() if name != study.mechanism.frame} if key in (
+        "omega", "epsilon") else steps, "angle" if key == "angles" else "") for key, steps in named.items()}
 
 
 def _positions(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
     p = study.positions
-    special = {name: s.step for name, s in p.special.items()}
-    return {"points": _all(study, p.points), "angles": _all(study, p.directions, "angle"), **_special(study, special)}
+    return _moving(study, {"points": p.points, "angles": p.directions}, special={name: s.step for name, s in p.special.items()})
 
 
 def _velocities(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
-    v, frame = study.velocities, study.mechanism.frame
-    sliding = study.sliding.velocities
-    return {"points": _all(study, v.points), "omega": _all(study, {k: step for k, step in v.omega.items() if k != frame}),
-            **({"sliding": _all(study, sliding)} if sliding else {}), **_special(study, v.special)}
+    v = study.velocities
+    return _moving(study, {"points": v.points, "omega": v.omega}, sliding=study.sliding.velocities, special=v.special)
 
 
 def _accelerations(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
-    a, frame = study.accelerations, study.mechanism.frame
-    coriolis = study.sliding.coriolis
-    return {"points": _all(study, a.points), "epsilon": _all(study, {k: step for k, step in a.epsilon.items() if k != frame}),
-            **({"coriolis": _all(study, coriolis)} if coriolis else {}), **_special(study, a.special)}
+    a = study.accelerations
+    return _moving(study, {"points": a.points, "epsilon": a.epsilon}, coriolis=study.sliding.coriolis, special=a.special)
 
 
 def _forces(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:

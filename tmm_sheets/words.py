@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from decimal import Decimal
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from string import Formatter
 
@@ -195,10 +195,15 @@ _FILLED = (marked("задание {task}, вариант {variant}"), marked("ш
 """Texts of shipped schemes that are filled in."""
 
 
+@cache
+def _fields(text: str) -> re.Pattern[str]:
+    return re.compile(re.sub(r"\\{(\w+)\\}", r"(?P<\1>.+)", re.escape(text)))
+
+
 def of_file(text: str, say: Callable[[str], str] = tr) -> str:
     """A text of a project file: what shipped files say in the language of ``say``, anybody's own as it stands."""
     for pattern in _FILLED:
-        if match := re.fullmatch(re.sub(r"\\{(\w+)\\}", r"(?P<\1>.+)", re.escape(pattern)), text):
+        if match := _fields(pattern).fullmatch(text):
             return say(pattern).format(**match.groupdict())
     return say(text)
 
@@ -213,6 +218,7 @@ def both(said: Sequence[str]) -> str:
     return tell("{several} and {last}").format(several=", ".join(said[:-1]), last=said[-1]) if said[1:] else "".join(said)
 
 
+@lru_cache(1024)
 def every(text: str) -> tuple[str, ...]:
     """The text in all languages: what somebody may have written who has another one than the reader."""
     return tuple(dict.fromkeys(_catalogue(language).gettext(text) for language in LANGUAGES)) if text else ()

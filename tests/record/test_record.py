@@ -162,6 +162,8 @@ def test_record_of_one_sheet(tmp_path, capsys):
     assert capsys.readouterr() == ("", "")
     found = json.loads(path.read_text(encoding="utf-8"))
     assert [sheet["sheet"] for sheet in found["sheets"]] == [2]
+    assert {path.partition(".")[0] for path in found["results"]} == {"cycle", "positions", "velocities", "flywheel"}
+    assert not [name for name in found["plans"] if name["id"].startswith(("gear", "cam", "force", "lever"))]
     assert found["schema"] == 1
     assert found["lang"] == "ru"
 

@@ -26,7 +26,7 @@ from tmm_sheets.construction.step import Given, Step
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.project import Project
 from tmm_sheets.record.recording import unit
-from tmm_sheets.record.step_index import chain
+from tmm_sheets.record.step_index import with_ancestors
 from tmm_sheets.sheets.composed import Composed
 from tmm_sheets.sheets.sheet import every
 
@@ -78,7 +78,7 @@ class Values:
             for f in sheet.frames:
                 by_plan.setdefault(f.plan, set()).update(f.mu)
         for plan in plans.values():
-            for step in chain((*plan, *plan.auxiliaries.values())):
+            for step in with_ancestors((*plan, *plan.auxiliaries.values())):
                 if step.evaluated:
                     own = plans.get(step.plan, plan)
                     # Arms of forces are measured where these are drawn, on the schemes of the groups.

@@ -29,7 +29,7 @@ INCH = 25.4
 
 def render(drawing: Drawing, dpi: float = DPI) -> bytes:
     """PNG file of a drawing, bytes."""
-    chord = min(max(SAGITTA, 0.02 * INCH / dpi), 0.02)
+    chord = min(max(SAGITTA, 0.02 * INCH / max(dpi, LEAST_DPI)), 0.02)
     return picture(drawing.width, drawing.height, ink(drawing.marks, chord), dpi, drawing.title, drawing.author)
 
 

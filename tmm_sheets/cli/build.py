@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -112,19 +112,13 @@ def _build_many(
         raise BadInput(tell("no projects to build"), hint=tell("the list is empty"))
     build_store.check(parent)
     start = monotonic()
-    done, stopped = come_of(batch.on(batch.tasks(names), order, parent, jobs, scheduler), len(names))
+    done, ended = come_of(batch.on(batch.tasks(names), order, parent, jobs, scheduler), len(names))
     for outcome in sorted(done, key=lambda o: o.project):
         for warning in outcome.warnings:
             click.echo(f"{outcome.project}: {warning}", err=True)
     click.echo(batch.summary(done, parent, monotonic() - start))
     failures = [outcome for outcome in done if outcome.problem]
-    if stopped is not None:
-        if failures:
-            click.echo(batch.table(failures, len(names)), err=True)
-        say_stopped(len(names) - len(done), len(names))
-        raise stopped
-    if failures:
-        raise CannotBuild(batch.table(failures, len(names)))
+    ended(batch.table(failures, len(names)) if failures else "")
 
 
 def _listed(file: str) -> list[str]:
@@ -262,7 +256,7 @@ def run_roster(table: Path, task: str, corrected: bool, formats: tuple[str, ...]
     settings: dict[str, dict[str, Any]] = {"pdf": {"date": files.source_date()}}
     order = Order((), formats, settings, corrected, force, names=title_names())
     works = [batch.Task(s.project, s.folder, s.student, s.group) for s in students]
-    came, stopped = come_of(batch.on(works, order, output, jobs, scheduler), len(works))
+    came, ended = come_of(batch.on(works, order, output, jobs, scheduler), len(works))
     done = {outcome.folder: outcome for outcome in came}
     written, hand = put(output, rosters.lists(students, done, output), force)
     for s in students:
@@ -275,28 +269,28 @@ def run_roster(table: Path, task: str, corrected: bool, formats: tuple[str, ...]
     click.echo(rosters.told(students, done))
     for path in written:
         click.echo(path)
-    if stopped is not None:
-        say_stopped(len(students) - len(done), len(students))
-        raise stopped
-    failed = [s for s in students if done[s.folder].problem]
-    if failed:
-        raise CannotBuild("\n".join(f"{s.student}: {done[s.folder].problem}" for s in failed))
+    ended("\n".join(f"{s.student}: {done[s.folder].problem}" for s in students if s.folder in done and done[s.folder].problem))
 
 
-def come_of(running: Iterable[Outcome], total: int) -> tuple[list[Outcome], KeyboardInterrupt | None]:
-    """Outcomes of a batch as they come, with a bar; and what told it to end before."""
+def come_of(running: Iterable[Outcome], total: int) -> tuple[list[Outcome], Callable[[str], None]]:
+    """Outcomes of a batch as they come, with a bar; and how the command ends when these are told, by what is said of failures."""
     done: list[Outcome] = []
+    stopped: list[KeyboardInterrupt] = []
     try:
         with Bar(total) as bar:
             for outcome in running:
                 done.append(outcome)
                 bar.step(bool(outcome.problem))
     except KeyboardInterrupt as e:
-        return done, e
-    return done, None
+        stopped.append(e)
 
+    def ended(failures: str) -> None:
+        if not stopped and failures:
+            raise CannotBuild(failures)
+        for e in stopped:
+            click.echo("\n".join(filter(None, (failures, tell(
+                "stopped, {n} of {total} projects left; the same command goes on from there").format(
+                n=total - len(done), total=total)))), err=True)
+            raise e
 
-def say_stopped(left: int, total: int) -> None:
-    """Tell how many of a batch are left after Ctrl-C."""
-    said = tell("stopped, {n} of {total} projects left; the same command goes on from there")
-    click.echo(said.format(n=left, total=total), err=True)
+    return done, ended

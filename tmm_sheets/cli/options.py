@@ -25,9 +25,6 @@ PAPERS = ("A0", "A1", "A2", "A3", "A1x3", "A1x4", "A2x3", "A2x4", "A2x5", "A3x3"
 PARTS = ("positions", "velocities", "accelerations", "forces", "flywheel", "gear", "reducer", "train", "cam")
 """Parts of the results."""
 
-MOST_POSITIONS = 1_000_000
-"""Positions of a turn that a command computes at most."""
-
 
 def among(known: tuple[str, ...]) -> Callable[[click.Context, click.Parameter, str | None], tuple[str, ...] | None]:
     """Reader of an option that holds several known words with commas between."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,15 +10,12 @@ import click
 from tmm_sheets import files
 from tmm_sheets.box import Box
 from tmm_sheets.cli.options import CORRECTED, NO_CACHE, SHEETS, TITLE, folder_of, on_paper, open_project, plotter, refuse, titled
-from tmm_sheets.errors import CannotBuild
 from tmm_sheets.localized_cli import argument, command, option
 from tmm_sheets.progress import Progress
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.plotters import Plotter
-    from tmm_sheets.output.plot import Job, PlotLook
-    from tmm_sheets.project import Project
 
 
 def _window(context: click.Context, parameter: click.Parameter, value: str | None) -> Box | None:
@@ -62,85 +58,52 @@ def run_plot(
 ) -> None:
     """Put the sheets of PROJECT on paper, 1:1, or send a FILE made before (.plt, .pdf)."""
     refuse((machine is not None and tile is not None, marked("--tile cuts a PDF; a plotter takes a sheet in parts with --window")))
+    import shlex
+
+    from tmm_sheets.drawing import plotters
     from tmm_sheets.output import plot as plotting
 
     finished = project.lower().endswith(plotting.FILES)
     if finished and any((sheets, tile, bar, window, outline == "off", click.get_current_context().meta.get(TITLE))):
         raise click.UsageError(tell("{project} is finished: it can be sent or shown, not changed").format(project=project))
-    problem = None
+    problem, jobs = None, dict[Path, plotting.Job]()
     with Progress() as progress:
         if finished:
             folder = output if output is not None else Path(project).parent
             jobs = {Path(project): plotting.ready(Path(project))}
             made: dict[Path, bytes] = {}
         else:
+            from tmm_sheets.sheets import pages, sheet
+
             opened = open_project(project, corrected)
             folder = folder_of(opened.variant, output)
             if not dry_run:
                 files.check_folder(folder)
             look = plotting.PlotLook(machine, tile, overlap, bar, outline == "on", window)
-            jobs, problem = _plots(opened, sheets, look, folder, progress)
+            attempt = sheet.every(opened, progress.doing, opened.variant.chosen(sheets))
+            problem = attempt.problem()
+            for n, composed in attempt.drawn.items():
+                drawings, _ = pages.on_paper(opened, n, composed)
+                for k, drawing in enumerate(drawings, 1):
+                    job = plotting.job(drawing, f"sheet{n}-{k}" if len(drawings) > 1 else f"sheet{n}", look)
+                    jobs[folder / job.name] = job
             made = {path: job.data for path, job in jobs.items()}
-        if preview:
-            made |= _previews(jobs, machine, dpi, folder, progress)
+        for path, job in jobs.items() if preview else ():
+            progress.say(tell("preview of {path} ...").format(path=path))
+            made |= {folder / name: data for name, data in plotting.preview(job, machine or plotters.plotter(), dpi).items()}
         if ctb:
             from tmm_sheets.backends import dxf
 
             made[folder / "black.ctb"] = dxf.plot_styles()
         if not dry_run:
             files.write_all(made)
-    _tell(jobs, made)
-    if printer is not None:
-        _send(jobs, printer, dry_run)
-    if problem is not None:
-        raise problem
-
-
-def _tell(jobs: Mapping[Path, Job], made: Mapping[Path, bytes]) -> None:
-    """Names of the plots and of what goes with them, with what is to be said of each plot."""
     for path in dict.fromkeys((*jobs, *made)):
         click.echo(path)
         for note in jobs[path].notes if path in jobs else ():
             click.echo(f"    {note}")
-
-
-def _plots(opened: Project, sheets: tuple[int, ...], look: PlotLook, folder: Path, progress: Progress) -> tuple[
-        dict[Path, Job], CannotBuild | None]:
-    """Plots of the sheets asked for by their files, and what is to be said of those that cannot be drawn."""
-    from tmm_sheets.output import plot as plotting
-    from tmm_sheets.sheets import pages, sheet
-
-    attempt = sheet.every(opened, progress.doing, opened.variant.chosen(sheets))
-    problem = attempt.problem()
-    jobs: list[Job] = []
-    for n, composed in attempt.drawn.items():
-        drawings, _ = pages.on_paper(opened, n, composed)
-        jobs += (plotting.job(drawing, f"sheet{n}-{k}" if len(drawings) > 1 else f"sheet{n}", look)
-                 for k, drawing in enumerate(drawings, 1))
-    return {folder / job.name: job for job in jobs}, problem
-
-
-def _previews(jobs: Mapping[Path, Job], machine: Plotter | None, dpi: float, folder: Path, progress: Progress) -> dict[
-        Path, bytes]:
-    """Pictures of the plots, made from the plots themselves."""
-    from tmm_sheets.drawing.plotters import plotter
-    from tmm_sheets.output import plot as plotting
-
-    made: dict[Path, bytes] = {}
-    for path, job in jobs.items():
-        progress.say(tell("preview of {path} ...").format(path=path))
-        made |= {folder / name: data for name, data in plotting.preview(job, machine or plotter(), dpi).items()}
-    return made
-
-
-def _send(jobs: Mapping[Path, Job], printer: str, dry_run: bool) -> None:
-    """Send the plots to a printer of CUPS, or tell the commands that would."""
-    import shlex
-
-    from tmm_sheets.output import plot as plotting
-
-    for path, job in jobs.items():
-        if dry_run:
-            click.echo(tell("would send: {command}").format(command=shlex.join(plotting.command(job, path, printer))))
-        else:
-            click.echo(plotting.send(job, path, printer))
+    if printer is not None:
+        for path, job in jobs.items():
+            sent = shlex.join(plotting.command(job, path, printer))
+            click.echo(tell("would send: {command}").format(command=sent) if dry_run else plotting.send(job, path, printer))
+    if problem is not None:
+        raise problem

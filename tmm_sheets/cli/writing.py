@@ -9,7 +9,6 @@ import click
 from tmm_sheets import files
 from tmm_sheets.cli.options import (
     CORRECTED,
-    MOST_POSITIONS,
     NO_CACHE,
     PROJECT,
     SHEETS,
@@ -21,6 +20,7 @@ from tmm_sheets.cli.options import (
     refuse,
     titled,
 )
+from tmm_sheets.files import MOST_POSITIONS
 from tmm_sheets.localized_cli import argument, command, option
 from tmm_sheets.progress import Progress
 from tmm_sheets.words import marked, tell

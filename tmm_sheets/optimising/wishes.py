@@ -218,10 +218,8 @@ class _Reader:
         except ValueError as e:
             raise self.wrong(str(e)) from None
         # Where lengths are told in mm so they are compared.
-        return lambda values: 1000 * x if quantity == units.LENGTH.name and self._in_millimetres() else x
-
-    def _in_millimetres(self) -> bool:
-        return bool(self.names) and all(name.partition(".")[0] in IN_MILLIMETRES for name in self.names)
+        return lambda values: 1000 * x if quantity == units.LENGTH.name and {
+            name.partition(".")[0] in IN_MILLIMETRES for name in self.names} == {True} else x
 
     def _result(self, written: str) -> Reader:
         name = re.sub(r"\s+", "_", written)

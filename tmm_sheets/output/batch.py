@@ -18,7 +18,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from contextvars import copy_context
 from dataclasses import dataclass, replace
-from itertools import count as count_up
+from importlib import import_module
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -34,8 +34,6 @@ from tmm_sheets.words import tell
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
-KINDS = ("note", "measured", "page")
-"""What a student gets beside the sheets."""
 LARGEST_CHUNK = 25
 """Most projects of one task for a worker: a second or so of waiting for its result, and next to nothing for handing it over."""
 CHUNKS_EACH = 64
@@ -286,9 +284,12 @@ def folders(names: Iterable[str]) -> dict[str, str]:
     alike = [name for name in own if count[files.alike(found[name])] > 1]
     found |= {name: files.folder_name(parts[name][-1]) for name in alike}
     used = {*taken, *(files.alike(found[name]) for name in own if name not in alike)}
+    last = Counter[str]()
     for name in alike:
-        numbered = (found[name] + (f"-{n}" if n > 1 else "") for n in count_up(1))
-        found[name] = next(folder for folder in numbered if files.alike(folder) not in used)
+        base = found[name]
+        while files.alike(found[name]) in used:
+            last[base] += 1
+            found[name] = f"{base}-{last[base] + 1}"
         used.add(files.alike(found[name]))
     return found
 
@@ -340,7 +341,7 @@ def _hand_out(project: Project, folder: Path, force: bool, names: Mapping[str, s
     if force or not current(place, record_of(place), title_entries.FILE, fingerprint(table)):
         said += put(place, {title_entries.FILE: table.encode()}, force, fingerprint(table))[1]
     for kind in KINDS:
-        name, make = _MAKERS[kind]
+        name, make = KINDS[kind]
         made_from = fingerprint(program(), words.paper(), words.reader(), project.variant.content, kind)
         # What somebody may have filled in stays whatever it was made from.
         if place.read(name) is not None if kind == "measured" else not force and current(place, record_of(place), name, made_from):
@@ -357,27 +358,14 @@ def _hand_out(project: Project, folder: Path, force: bool, names: Mapping[str, s
     return made, tuple(said)
 
 
-def _note(project: Project) -> bytes:
-    from tmm_sheets.note import note
-
-    return note.write(project, ("pdf",)).files["note.pdf"]
-
-
-def _measured(project: Project) -> bytes:
-    from tmm_sheets.compare.measured import measured_lengths
-
-    return measured_lengths.table(project)
+def _made_by(module: str, made: Callable[[Any, Project], bytes]) -> Callable[[Project], bytes]:
+    """What makes something by a module that is imported when it is made."""
+    return lambda project: made(import_module(f"tmm_sheets.{module}"), project)
 
 
-def _page(project: Project) -> bytes:
-    from tmm_sheets.living.page import page
-
-    text, problem = page(project)
-    if problem is not None and not text:
-        raise problem
-    return text.encode()
-
-
-_MAKERS: dict[str, tuple[str, Callable[[Project], bytes]]] = {
-    "note": ("note.pdf", _note), "measured": ("measured.csv", _measured), "page": ("page.html", _page)}
-"""The name of each, and what makes it."""
+KINDS: dict[str, tuple[str, Callable[[Project], bytes]]] = {
+    "note": ("note.pdf", _made_by("note.note", lambda note, project: note.write(project, ("pdf",)).files["note.pdf"])),
+    "measured": ("measured.csv", _made_by("compare.measured.measured_lengths", lambda lengths, project: lengths.table(project))),
+    "page": ("page.html", _made_by("living.page", lambda living, project: living.page(project)[0].encode())),
+}
+"""What a student gets beside the sheets: the name of each file, and what makes it."""

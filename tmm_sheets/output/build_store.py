@@ -9,6 +9,7 @@ was changed by hand: it stays, and the new one goes beside it.
 from __future__ import annotations
 
 import json
+import re
 import zipfile
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -19,7 +20,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from tmm_sheets import files
+from tmm_sheets import files, kept
 from tmm_sheets.errors import BadInput, Problem, reason_of
 from tmm_sheets.files import URL
 from tmm_sheets.program import fingerprint
@@ -45,13 +46,9 @@ class BuildRecord:
     @classmethod
     def read(cls, data: bytes | None) -> BuildRecord:
         """The record of these bytes; an empty one when they are not such a record."""
-        try:
-            tree = json.loads(data or b"")
-            if tree["schema"] != SCHEMA:
-                return cls()
-            return cls({str(k): (str(made), str(content)) for k, (made, content) in tree["files"].items()}, str(tree["whole"]))
-        except (ValueError, KeyError, TypeError, AttributeError):
-            return cls()
+        return kept.taken(data, lambda tree: cls(
+            {str(k): (str(made), str(content)) for k, (made, content) in tree["files"].items()}, str(tree["whole"]))
+            if tree["schema"] == SCHEMA else None) or cls()
 
     def data(self) -> bytes:
         """Its bytes."""
@@ -150,7 +147,7 @@ class Url(type(Path())):  # type: ignore[misc]
     """A place in an object store, called as it was typed."""
 
     def __str__(self) -> str:
-        return URL.sub(r"\1://", super().__str__().replace("\\", "/"), count=1)
+        return re.sub(URL, r"\1://", super().__str__().replace("\\", "/"), count=1)
 
     def absolute(self) -> Url:
         """The same: it is."""
@@ -159,7 +156,7 @@ class Url(type(Path())):  # type: ignore[misc]
 
 def place(told: Path) -> Path:
     """A place of files as it was told: a folder, or one in an object store."""
-    return Url(told) if URL.match(told.as_posix()) else told
+    return Url(told) if re.match(URL, told.as_posix()) else told
 
 
 class ObjectStore:
@@ -287,14 +284,14 @@ def put(outlet: Outlet, made: Mapping[str, bytes], force: bool, made_from: str =
     inputs, for who asks whether they are :func:`current`.
     """
     record = record_of(outlet)
-    named, kept = dict[str, bytes](), list[str]()
+    named, stays = dict[str, bytes](), list[str]()
     for name, data in made.items():
         new = name if force or outlet.read(name) == data else free_name(outlet, record, name)
         if new != name:
-            kept.append(of_hand(name, new))
+            stays.append(of_hand(name, new))
         named[new] = data
     keep(outlet, record, named, dict.fromkeys(named, made_from), None)
-    return list(named), kept
+    return list(named), stays
 
 
 def untouched(path: Path) -> bool:

@@ -69,6 +69,10 @@ class Order:
     kept: bool = field(default_factory=kept.used)
     names: Names = field(default_factory=Names)
 
+    def __post_init__(self) -> None:
+        for form in self.formats:
+            files.check_format(form)
+
     def targets(self, pages: Mapping[int, int]) -> list[Target]:
         """The files of sheets on so many pages, format by format."""
         found = []

@@ -13,6 +13,7 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 
 from tmm_sheets import catalogue, csv_tables, files, spelling
@@ -194,19 +195,27 @@ def _machine(called: str, varied: bool) -> str:
     """
     if called.endswith(catalogue.SUFFIX) or (catalogue.is_shipped(called) if not varied else families.of(called) is not None):
         return called
-    word = called.casefold()
-    by_name, by_title = dict[str, None](), dict[str, None]()
-    for e in catalogue.entries():
-        family = families.of(e.name)
-        machine = "" if family is None else e.name.partition(family.rules.separator)[0]
-        if machine or not varied:
-            name, titles = machine or e.name, [title.casefold() for title in every(e.title)]
-            by_name |= {name: None} if word == name.rpartition("/")[2].casefold() else {}
-            by_title |= {name: None} if any(word in (title, *re.split(r"[^\w-]+", title)) for title in titles) else {}
-    meant = list(by_name or by_title)
+    names, titles = _words(catalogue.entries(), varied)
+    meant = [*(names.get(called.casefold()) or titles.get(called.casefold()) or ())]
     if len(meant) > 1:
         raise _Wrong("task", tell('"{task}" may be several').format(task=called), either(meant))
     return meant[0] if meant else called
+
+
+@lru_cache(2)
+def _words(entries: tuple[catalogue.ShippedProject, ...], varied: bool) -> tuple[dict[str, dict[str, None]], ...]:
+    """Projects, or machines that have variants, by their names without the family, and by titles and words of these."""
+    names, titles = defaultdict[str, dict[str, None]](dict), defaultdict[str, dict[str, None]](dict)
+    for e in entries:
+        family = families.of(e.name)
+        machine = "" if family is None else e.name.partition(family.rules.separator)[0]
+        if machine or not varied:
+            name = machine or e.name
+            names[name.rpartition("/")[2].casefold()][name] = None
+            for title in map(str.casefold, every(e.title)):
+                for word in (title, *re.split(r"[^\w-]+", title)):
+                    titles[word][name] = None
+    return names, titles
 
 
 # --- what was made ----------------------------------------------------------------------------------------------------------
@@ -236,8 +245,8 @@ def lists(students: Sequence[Enrolled], done: Mapping[str, Outcome], folder: Pat
 
     Paths of project files are as seen from the folder of both: it may be moved, or put on another machine, with what it is about.
     """
-    lines = [f"{_quoted(s.folder)} = {_quoted(s.project if catalogue.is_shipped(s.project) else _from(folder, s.project))}\n"
-             for s in students]
+    found = {s.folder: s.project if catalogue.is_shipped(s.project) else _from(folder, s.project) for s in students}
+    lines = (" = ".join(json.dumps(text, ensure_ascii=False) for text in pair) + "\n" for pair in found.items())
     return {TABLE: csv_tables.written(_table(students, done)), PROJECTS: "".join(lines).encode()}
 
 
@@ -246,7 +255,3 @@ def _from(folder: Path, project: str) -> str:
         return Path(os.path.relpath(project, folder)).as_posix()
     except ValueError:  # on another drive of Windows
         return os.path.abspath(project)
-
-
-def _quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False)

@@ -35,8 +35,18 @@ class Picture:
     drawing: Drawing
 
     def rendered(self, form: str, **settings: Any) -> bytes:
-        """The bytes of a file of a format (svg, png, pdf, dxf, hpgl); ``settings`` are those of its writer, such as ``dpi``."""
-        return import_module(f"tmm_sheets.backends.{form}").render(self.drawing, **settings)  # type: ignore[no-any-return]
+        """The bytes of a file of a format (svg, png, pdf, dxf, hpgl); ``settings`` are those of its writer, such as ``dpi``.
+
+        Raises
+        ------
+        BadInput
+            when there is no such format, or its writer cannot take the settings.
+        """
+        files.check_format(form)
+        try:
+            return import_module(f"tmm_sheets.backends.{form}").render(self.drawing, **settings)  # type: ignore[no-any-return]
+        except ValueError as e:
+            raise BadInput(f"{form}: {e}") from e
 
     @property
     def svg(self) -> str:

@@ -143,11 +143,6 @@ def formula_of(step: Step) -> expression.Expression | None:
     return with_bare_numbers(tree, step)
 
 
-def formula_in_letters(step: Step, tree: expression.Expression) -> str:
-    """The formula of a step in letters, LaTeX."""
-    return f"{to_latex(step.symbol or step.name)} = {latex(tree, [_argument_latex(a) for a in step.args])}"
-
-
 def formula_in_numbers(step: Step, tree: expression.Expression, k: int) -> str:
     """The formula with the numbers of position ``k``, LaTeX; empty if one of them is undefined."""
     values = [value_at(a, k) for a in (*step.args, step)]
@@ -218,8 +213,9 @@ def record(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any
         ``closes`` (label of the position that ends the cycle)
     rules : moves and formulas: what each ``takes`` and ``gives``, its ``primitive`` or ``expression``, the ``source`` of a formula
     steps : every step by its id ``plan/name``; arguments stand before what is made of them
-    results : the ``step`` behind every number of ``solve --json`` but ``structure``, ``condition`` and ``scales``; ``part`` if it
-        is a part of the step's value, ``at`` if it exists at some positions only
+    results : the ``step`` behind every number of ``solve --json`` but ``structure``, ``condition`` and ``scales``, of some sheets
+        behind those of the parts that they show; ``part`` if it is a part of the step's value, ``at`` if it exists at some
+        positions only
     searches : plans that only looked for something, by purpose: how many, and how many steps were evaluated or replayed
     sheets : ``frames`` and ``marks`` of each sheet
     not_computed : parts and sheets that cannot be built, with the reason; absent if there are none
@@ -233,8 +229,10 @@ def record(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any
 
     asked = list(numbers) or list(range(1, len(project.sheets) + 1))
     refused: dict[str, CannotBuild] = {}
-    tree = results.told(project, None, refused=refused)
+    whole = len(asked) == len(project.sheets)
+    tree = results.told(project, None, refused=refused) if whole else {}
     attempt = sheet.attempt(project, asked, steps=True)
+    tree = tree or results.told(project, project.made, refused=refused)
     scales: dict[str, Scale] = {}
     for composed in attempt.drawn.values():
         scales |= composed.scales
@@ -269,12 +267,8 @@ def _lines(value: Any, level: int) -> str:
         inner = (f"{_encoded(k)}: {_lines(v, level + 1)}" for k, v in value.items())
         return "{\n" + ",\n".join(inner) + "\n}"
     if value and level < 4 and isinstance(value, list) and isinstance(value[0], dict):
-        return "[\n" + ",\n".join(_sheet(v, level) for v in value) + "\n]"
+        return "[\n" + ",\n".join(_lines(v, level if "marks" in v else 4) for v in value) + "\n]"
     return _encoded(value)
-
-
-def _sheet(value: dict[str, Any], level: int) -> str:
-    return _lines(value, level) if "marks" in value else _lines(value, 4)
 
 
 def book_of(project: Project) -> StepIndex:
@@ -357,7 +351,7 @@ class _StepTexts:
         labels = self.plan.labels
         if len(labels) > MAX_SENTENCES or not any(labels):
             labels = labels[:1]
-        lengths = {np.shape(value_of(a))[0] for a in (*step.args, step) if _is_row(value_of(a))}
+        lengths = {np.shape(x)[0] for x in map(value_of, (*step.args, step)) if not isinstance(x, str | Curve) and np.ndim(x)}
         if lengths - {len(self.plan.labels)}:
             labels = ("",)
         tree = formula_of(step)
@@ -371,12 +365,9 @@ class _StepTexts:
                     lines[label] = found
         told: dict[str, Any] = {"sentence": sentence}
         if tree is not None:
-            told["formula"] = {"symbols": formula_in_letters(step, tree), "numbers": shown}
+            letters = latex(tree, [_argument_latex(a) for a in step.args])
+            told["formula"] = {"symbols": f"{to_latex(step.symbol or step.name)} = {letters}", "numbers": shown}
         return told | ({"helpers": lines} if lines else {})
-
-
-def _is_row(value: Any) -> bool:
-    return not isinstance(value, str | Curve) and np.ndim(value) > 0
 
 
 def _helpers(step: Step, k: int) -> list[dict[str, Any]]:

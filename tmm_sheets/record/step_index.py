@@ -6,6 +6,8 @@ Arguments stand before the steps made of them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
+from itertools import count as count_up
 from typing import Any
 
 from tmm_sheets import result_files
@@ -14,7 +16,7 @@ from tmm_sheets.construction.step import Plan, Reported, Step, ordered, parents
 from tmm_sheets.words import tr
 
 
-def chain(steps: Iterable[Step], seen: set[int] | None = None) -> Iterator[Step]:
+def with_ancestors(steps: Iterable[Step], seen: set[int] | None = None) -> Iterator[Step]:
     """Steps with all their ancestors, also through numbers that a search found, each once, arguments first."""
     return ordered(steps, parents, seen)
 
@@ -41,23 +43,15 @@ class StepIndex:
             for step in (*plan.auxiliaries.values(), *plan):
                 self._plan_of.setdefault(id(step), name)
         for name, plan in self.plans.items():
-            self._adopt([*plan, *plan.auxiliaries.values()], name)
+            for step in with_ancestors([*plan, *plan.auxiliaries.values()]):  # those without a plan
+                self._plan_of.setdefault(id(step), name)
         seen: set[int] = set()
         for plan in self.plans.values():
-            for step in chain((*plan, *plan.auxiliaries.values()), seen):
-                self._enter(step)
-
-    def _adopt(self, steps: Iterable[Step], plan: str) -> None:
-        """Assign steps without a plan to the plan that uses them."""
-        for step in chain(steps):
-            self._plan_of.setdefault(id(step), plan)
-
-    def _enter(self, step: Step) -> None:
-        plan = self._plan_of[id(step)]
-        found = _free(f"{plan}/{step.name}", self.steps)
-        self._ids[id(step)] = found
-        self.steps[found] = step
-        self.of[plan].append(found)
+            for step in with_ancestors((*plan, *plan.auxiliaries.values()), seen):
+                name = self._plan_of[id(step)]
+                found = self._ids[id(step)] = _free(f"{name}/{step.name}", self.steps)
+                self.steps[found] = step
+                self.of[name].append(found)
 
     def id(self, step: Step) -> str:
         """Id of a step; raises KeyError if it is not recorded."""
@@ -98,20 +92,11 @@ def rule_json(step: Step) -> dict[str, Any]:
 
 
 def _keys(name: str, count: int) -> Iterator[str]:
-    yield name
-    yield f"{name} ({count})"
-    n = 2
-    while True:
-        yield f"{name} ({count}, {n})"
-        n += 1
+    return chain((name, f"{name} ({count})"), (f"{name} ({count}, {n})" for n in count_up(2)))
 
 
 def _free(name: str, taken: dict[str, Any]) -> str:
-    n = 2
-    found = name
-    while found in taken:
-        found, n = f"{name}@{n}", n + 1
-    return found
+    return next(free for free in chain((name,), (f"{name}@{n}" for n in count_up(2))) if free not in taken)
 
 
 SECTIONS = ("cycle", "positions", "velocities", "accelerations", "forces", "flywheel", "gear", "reducer", "train", "cam")

@@ -14,7 +14,7 @@ from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.numbers import in_a_row, listed
 from tmm_sheets.project import LINKAGE
 from tmm_sheets.record.recording import book_of, unit
-from tmm_sheets.record.step_index import StepIndex, chain, leaves
+from tmm_sheets.record.step_index import StepIndex, leaves, with_ancestors
 from tmm_sheets.words import marked, tell, tell_n
 
 if TYPE_CHECKING:
@@ -25,8 +25,12 @@ _ABOUT = ("schema", "project", "variant", "structure", "condition", "scales")
 """Sections of the results about the whole project: read, counted or chosen, not constructed."""
 
 
+_OF_PART = {"x": marked(", projection on x"), "y": marked(", projection on y"), "abs": marked(", magnitude"),
+            "angle": marked(", angle"), "": ""}  # fmt: skip
+
+
 def lines(project: Project, result: str) -> Iterator[str]:
-    """Lines of the chain of a result, arguments first: name, letters, value with its unit, and origin.
+    """Lines of the with_ancestors of a result, arguments first: name, letters, value with its unit, and origin.
 
     Of values over positions the line has that at the position of the result, or of the force analysis.
 
@@ -56,13 +60,13 @@ def lines(project: Project, result: str) -> Iterator[str]:
     book = book_of(project)
     at = told.at[0] if told.at else _position(project)
     given: set[str] = set()
-    for step in chain([told.step]):
+    for step in with_ancestors([told.step]):
         for arg in step.args:
             if isinstance(arg, GivenNumber | GivenPoint | Given) and arg.name not in given:
                 given.add(arg.name)
                 yield _given(arg, at, book, step)
         yield _line(step, at, book)
-    yield f"{result}{_of_part(told)} = {_shown(told, at, book)}"
+    yield f"{result}{tell(_OF_PART[told.part])} = {_shown(told, at, book)}"
 
 
 def _no_part(project: Project, result: str, part: str) -> BadInput:
@@ -120,23 +124,8 @@ def _line(step: Step, at: str, book: StepIndex) -> str:
     name = book.id(step) if step in book else step.name
     value = value_at(step, k) if np.ndim(step.value) < 2 else step.value
     told = unit(step, plan) if plan is not None else step.rule.unit
-    return f"{name}  {step.symbol or step.name} = {_number(value, told)}  {_from(step, k, plan)}"
-
-
-def _from(step: Step, k: int, plan: Any) -> str:
-    to_mm: Any = float
-    return protocol.sentence(step, k, to_mm, plan.unit if plan is not None else "")
-
-
-def _of_part(told: Reported) -> str:
-    words = {
-        "x": marked(", projection on x"),
-        "y": marked(", projection on y"),
-        "abs": marked(", magnitude"),
-        "angle": marked(", angle"),
-        "": "",
-    }
-    return tell(words[told.part])
+    sentence = protocol.sentence(step, k, float, plan.unit if plan is not None else "")
+    return f"{name}  {step.symbol or step.name} = {_number(value, told)}  {sentence}"
 
 
 def _shown(told: Reported, at: str, book: StepIndex) -> str:

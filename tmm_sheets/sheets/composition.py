@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from tmm_sheets import kept
 from tmm_sheets.box import Box
 from tmm_sheets.construction.readable import CURVE, MAIN, POLE, TOOTH
 from tmm_sheets.errors import CannotBuild
@@ -57,8 +57,8 @@ def _arranged(project: Project, n: int) -> Arrangement:
     plan = _with_all_groups(project, arrangement(project.sheets[n - 1]).fitted(project.parts))
     before = Answered(project, n, "arrangement", FORM)
     for data in before.found():
-        with suppress(ValueError, TypeError, KeyError, RecursionError):
-            return replace(plan, views=tuple(_loaded(*row) for row in json.loads(data)))
+        if (views := kept.taken(data, lambda rows: tuple(_loaded(*row) for row in rows))) is not None:
+            return replace(plan, views=views)
     if any(view.needs == "forces" for view in plan.views):
         project.check_forces()
     if any("axis" in view.options for view in plan.views):

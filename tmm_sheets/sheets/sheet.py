@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
+from tmm_sheets import kept
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import MarkGroup, Part
@@ -71,12 +72,9 @@ def stored(sheet: Composed) -> bytes:
 
 def loaded(data: bytes) -> Composed | None:
     """The sheet of these bytes; None when they are none."""
-    try:
-        end = 4 + int.from_bytes(data[:4], "big")
-        points = np.frombuffer(data, NUMBERS, offset=end).astype(float, copy=False).view(complex)
-        return _sheet(json.loads(data[4:end]), points)
-    except (ValueError, TypeError, KeyError, IndexError, AttributeError, StopIteration, RecursionError):
-        return None
+    end = 4 + int.from_bytes(data[:4], "big")
+    return kept.taken(data[4:end], lambda tree: _sheet(
+        tree, np.frombuffer(data, NUMBERS, offset=end).astype(float, copy=False).view(complex)))
 
 
 def _sheet(tree: dict[str, Any], points: Any) -> Composed:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import pickle
 import re
 from collections.abc import Iterator, Mapping, MutableMapping
-from functools import reduce
+from functools import lru_cache, reduce
 from itertools import pairwise
 from operator import getitem
 from typing import Any
@@ -60,7 +61,7 @@ def changed(text: str, changes: Mapping[str, Any]) -> str:
     """
     import tomlkit
 
-    document = tomlkit.parse(text)
+    document = pickle.loads(_document(text))
     for name, value in changes.items():
         try:
             _put(document, key_path(name), value)
@@ -68,6 +69,14 @@ def changed(text: str, changes: Mapping[str, Any]) -> str:
             raise BadInput(tell("{name}: there is no such place in the project file").format(name=name),
                            hint=tell("places are named as by why, counted from 0: crank.length, group[0].lengths[1]")) from None
     return tomlkit.dumps(document)
+
+
+@lru_cache(8)
+def _document(text: str) -> bytes:
+    """The document of a text, to be copied: whoever tries many values changes one text again and again, and reading it is slow."""
+    import tomlkit
+
+    return pickle.dumps(tomlkit.parse(text))
 
 
 def _put(document: Any, path: tuple[str | int, ...], value: Any) -> None:
@@ -93,7 +102,13 @@ def _put(document: Any, path: tuple[str | int, ...], value: Any) -> None:
 
 
 def written(tables: Mapping[str, Any]) -> str:
-    """A project file of these tables."""
+    """A project file of these tables.
+
+    Raises
+    ------
+    BadInput
+        for a value that TOML has none for.
+    """
     import tomlkit
 
     return tomlkit.dumps(_plain(tables))
@@ -104,7 +119,9 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {str(key): _plain(inner) for key, inner in value.items() if inner is not None}
     if hasattr(value, "tolist"):  # of numpy
-        return value.tolist()
+        return _plain(value.tolist())
     if isinstance(value, list | tuple):
         return [_plain(inner) for inner in value]
-    return value
+    if isinstance(value, str | int | float):
+        return value
+    raise BadInput(tell("no project file can hold {value}").format(value=repr(value)))

@@ -61,10 +61,10 @@ def names() -> Iterator[str]:
 
 def listed(folder: Path) -> Iterator[str]:
     """Names of a family's projects, as ``list`` shows them: of each machine the example, or all ciphers that ``shown`` has."""
-    rules = _rules(folder)
+    rules, family = _rules(folder), folder.resolve().name
     for name, machine in rules["machine"].items():
         for cipher in rules.get("shown") or [machine.get("example") or rules["example"]]:
-            yield f"{folder.resolve().name}/{name}{rules.get('separator', '@')}{cipher}"
+            yield f"{family}/{name}{rules.get('separator', '@')}{cipher}"
 
 
 def heading(folder: Path, project: str) -> dict[str, Any]:
@@ -73,7 +73,8 @@ def heading(folder: Path, project: str) -> dict[str, Any]:
     called, _, cipher = project.partition("/")[2].partition(rules.get("separator", "@"))
     machine = rules["machine"][called]
     about = {"name": project, "machine": called, "cipher": cipher, "title": machine.get("title") or called}
-    return table_of_heading(files.named(machine["scheme"][0], folder, folder), about)
+    scheme = machine["scheme"][0]
+    return table_of_heading(folder / scheme if _is_ours(folder) else files.named(scheme, folder, folder), about)
 
 
 def table_of_heading(path: Path, fields: Mapping[str, str] | None = None) -> dict[str, Any]:

@@ -299,16 +299,13 @@ def compiled(form: str) -> re.Pattern[str]:
 def of_signs(signs: str) -> CipherTable:
     """A cipher such as ``yy-Т-ab``: small Latin letters are digits; those that it has once choose."""
     parts = [f"p{k}" if "a" <= sign <= "z" else "" for k, sign in enumerate(signs)]
-    form = "".join(f"(?P<{part}>[0-9])" if part else _either(sign) for part, sign in zip(parts, signs, strict=True))
+    # A letter of a cipher is written in either alphabet.
+    form = "".join(f"(?P<{part}>[0-9])" if part else f"[{sign}{latin(sign)}]" if latin(sign) != sign else re.escape(sign)
+                   for part, sign in zip(parts, signs, strict=True))
     chosen = [(part, sign) for part, sign in zip(parts, signs, strict=True) if part and signs.count(sign) == 1]
     written = "".join(f"${{{part}}}" if part else sign.replace("$", "$$") for part, sign in zip(parts, signs, strict=True))
     return CipherTable(form=form, written=written, letters="".join(sign for _, sign in chosen),
                        digits=tuple((part, 1) for part, _ in chosen))
-
-
-def _either(sign: str) -> str:
-    """A letter of a cipher in either alphabet."""
-    return f"[{sign}{latin(sign)}]" if latin(sign) != sign else re.escape(sign)
 
 
 @dataclass(frozen=True)

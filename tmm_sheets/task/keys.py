@@ -57,7 +57,7 @@ def texts() -> Iterator[str]:
 def validators(hint: Any) -> Iterator[Any]:
     """Validators of a type and of those that it is made of."""
     args = get_args(hint)
-    yield from args[1:] if get_origin(hint) is Annotated else ()
+    yield from args[1:] if get_origin(hint) is Annotated and args[1] is not schema.LATER else ()
     for inner in args[:1] if get_origin(hint) is Annotated else args:
         yield from validators(inner)
 
@@ -100,7 +100,7 @@ def value(hint: Any) -> str:
     """What a key takes, in words, from its type."""
     origin, args = get_origin(hint), get_args(hint)
     if origin is Annotated:
-        return restricted(args[0], args[1:])
+        return value(args[0]) if args[1] is schema.LATER else restricted(args[0], args[1:])
     if origin in (Union, UnionType):
         return either([value(a) for a in args if a is not NoneType])
     if origin is Literal:

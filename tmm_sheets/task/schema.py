@@ -1,12 +1,11 @@
 """Tables of the project file as they are checked: keys, ranges, what needs what. The strings under the keys are for the docs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from math import inf
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, model_validator
+from pydantic_core import CoreSchema, core_schema
 
 from tmm_sheets.task import cam_table, units
 from tmm_sheets.task.values import (
@@ -78,7 +77,19 @@ class Table(BaseModel):
     Numbers are in SI then, whatever units the file has: m, kg, s, rad, N. A key left out is its default, None where it has none.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=False, defer_build=True)
+
+
+class _Later:
+    """Marks the tables of a file: pydantic builds the reader of one when a file first has it, and not of all at each start."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        model, *rest = get_args(source) or (source,)
+        read = core_schema.no_info_plain_validator_function(model.model_validate)
+        return core_schema.tuple_variable_schema(read) if rest == [...] else read
+
+
+LATER = _Later()
 
 
 Rule = tuple[str, Callable[[Any], Any]]

@@ -5,13 +5,11 @@ names of points, links and guides are known where they are used. What needs geom
 turn) is judged where the geometry is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, PrivateAttr, ValidationError
 
@@ -23,6 +21,7 @@ from tmm_sheets.task.letters import check_letters, freed
 from tmm_sheets.task.messages import said
 from tmm_sheets.task.names import check_names
 from tmm_sheets.task.schema import (
+    LATER,
     BalancingTable,
     CamTable,
     CrankTable,
@@ -82,31 +81,31 @@ class Variant(Table):
 
     schema_: Literal[1] = Field(alias="schema", description=marked("version of the file format: schema = 1"))
     project: HeadingTable = Field(description=marked("table [project] with name, title and sheets"))
-    title_block: TitleBlockTable = TitleBlockTable()
-    paper: PaperTable = PaperTable()
-    note: NoteTable = NoteTable()
-    synthesis: SynthesisTable | None = None
-    crank: CrankTable | None = None
-    input: InputTable | None = None
+    title_block: Annotated[TitleBlockTable, LATER] = TitleBlockTable.model_construct()
+    paper: Annotated[PaperTable, LATER] = PaperTable.model_construct()
+    note: Annotated[NoteTable, LATER] = NoteTable.model_construct()
+    synthesis: Annotated[SynthesisTable | None, LATER] = None
+    crank: Annotated[CrankTable | None, LATER] = None
+    input: Annotated[InputTable | None, LATER] = None
     points: dict[Name, tuple[Coordinate, Coordinate]] = Field(
         default={}, description=marked('coordinates x and y with their units, for example C = ["0 m", "-0.26 m"]')
     )
     """the fixed points in the world frame: x right, y up, origin in the crank pivot"""
-    guide: tuple[GuideTable, ...] = ()
-    group: tuple[GroupTable, ...] = ()
-    point: tuple[PointTable, ...] = ()
-    link: tuple[LinkTable, ...] = ()
-    cycle: CycleTable | None = None
-    forces: ForcesTable = ForcesTable()
-    force: tuple[ForceTable, ...] = ()
-    moment: tuple[MomentTable, ...] = ()
-    balancing: BalancingTable | None = None
-    friction: FrictionTable | None = None
-    flywheel: FlywheelTable | None = None
-    gear: GearTable | None = None
-    reducer: ReducerTable | None = None
-    train: TrainTable | None = None
-    cam: CamTable | None = None
+    guide: Annotated[tuple[GuideTable, ...], LATER] = ()
+    group: Annotated[tuple[GroupTable, ...], LATER] = ()
+    point: Annotated[tuple[PointTable, ...], LATER] = ()
+    link: Annotated[tuple[LinkTable, ...], LATER] = ()
+    cycle: Annotated[CycleTable | None, LATER] = None
+    forces: Annotated[ForcesTable, LATER] = ForcesTable.model_construct()
+    force: Annotated[tuple[ForceTable, ...], LATER] = ()
+    moment: Annotated[tuple[MomentTable, ...], LATER] = ()
+    balancing: Annotated[BalancingTable | None, LATER] = None
+    friction: Annotated[FrictionTable | None, LATER] = None
+    flywheel: Annotated[FlywheelTable | None, LATER] = None
+    gear: Annotated[GearTable | None, LATER] = None
+    reducer: Annotated[ReducerTable | None, LATER] = None
+    train: Annotated[TrainTable | None, LATER] = None
+    cam: Annotated[CamTable | None, LATER] = None
     given: dict[Name, PrintedNumber] = Field(default={})
     """quantities as the task prints them, for the table "Given data" of the sheets and for nothing else: `G2 = "80 N"`,
     `theta = "60 deg"`, `delta = "1/80"`; without it the table has the lengths and masses of the file
@@ -214,7 +213,7 @@ class Variant(Table):
         """Whether it is a shipped project."""
         return self._shipped
 
-    def shipped_as(self, name: str) -> Variant:
+    def shipped_as(self, name: str) -> "Variant":
         """The same as a shipped project of that name."""
         self._called, self._shipped = name, True
         return self
@@ -317,7 +316,7 @@ ROOM_OF_GROUPS = 4
 # --- reading --------------------------------------------------------------------------------------------------------
 
 
-def read(path: Path | str) -> Variant:
+def read(path: Path | str) -> "Variant":
     """Read a project file.
 
     Raises
@@ -330,7 +329,7 @@ def read(path: Path | str) -> Variant:
     return parse(text, str(path), (note,) if note else ())
 
 
-def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple[Misprint, ...] = ()) -> Variant:
+def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple[Misprint, ...] = ()) -> "Variant":
     """Read the text of a project file; ``file`` is its name in messages, ``warnings`` and ``misprints`` are kept for the user.
 
     Raises

@@ -110,7 +110,8 @@ def _open(path: Path) -> tuple[Document, list[str]]:
 
     head = _head(path)
     _refuse_others(path, head)
-    damage = (OSError, DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError)
+    damage = (OSError, DXFError, ValueError, LookupError, TypeError, AttributeError, AssertionError, ArithmeticError, StopIteration,
+              RecursionError)
     with _silent_library():
         try:
             try:  # most files need no repair, and binary ones cannot be repaired
@@ -120,7 +121,7 @@ def _open(path: Path) -> tuple[Document, list[str]]:
                     raise
             whole = _completed(path.read_bytes())
             document, auditor = recover.readfile(path) if whole is None else recover.read(BytesIO(whole))
-        except (*damage, RecursionError) as e:
+        except damage as e:
             said = tell("this is not a DXF file or it is damaged beyond repair ({why})").format(why=str(e) or type(e).__name__)
             raise BadInput(Problem(said, str(path), hint=tell(AS_DXF))) from None
     # Nearly every program writes something this library mends; only what was lost is worth a word.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import groupby
 from math import isfinite
@@ -105,7 +106,7 @@ def template(project: Project, folder: Path, everything: bool, say: Callable[[st
     found = measurables(project, say)
     called = project.variant.called
     data = measured_file.template(called, found, everything)
-    if path.exists() and path.read_bytes() != data:
+    if os.path.exists(path) and path.read_bytes() != data:
         raise BadInput(Problem(tell("is there already and may be filled in; nothing was written"), str(path),
                                hint=tell("rename it, or choose another folder with -o")))
     asked = measured_file.asked_for(found, everything)
