@@ -31,10 +31,11 @@ _SPACE = re.compile(rf"(?:[ \t\n]|{_COMMENT.pattern})*")
 
 @dataclass(frozen=True)
 class TomlLines:
-    """Lines (counted from 1) and trailing comments of the values of one TOML text; paths as pydantic gives them."""
+    """Lines (counted from 1), places and trailing comments of the values of one TOML text; paths as pydantic gives them."""
 
     lines: dict[KeyPath, int] = field(default_factory=dict)
     ends: dict[KeyPath, int] = field(default_factory=dict)
+    places: dict[KeyPath, tuple[int, int]] = field(default_factory=dict)
     comments: dict[int, str] = field(default_factory=dict)
 
     def line(self, path: KeyPath) -> int:
@@ -163,12 +164,13 @@ class _Scanner:
         self.value(path)
 
     def value(self, path: KeyPath) -> None:
-        close = {"[": "]", "{": "}"}.get(self.text[self.pos])
+        start, close = self.pos, {"[": "]", "{": "}"}.get(self.text[self.pos])
         if close:
             self.members(path, close)
         else:
             self.take(_VALUE)
         self.found.ends[path] = self.line()
+        self.found.places[path] = start, self.pos
 
     def members(self, path: KeyPath, close: str) -> None:
         self.pos += 1

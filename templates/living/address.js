@@ -44,14 +44,11 @@ function readAddress() {
   const plan = found.get("plan"), sheet = Number(found.get("sheet"));
   if (record.lessons?.some((one) => one.plan === plan)) {
     openTab("lesson", plan, (Number(found.get("step")) || 0) - 1);
-    if (found.get("mode") === "lecture" && lesson.mode !== "lecture") lessonMode("lecture");
+    const mode = found.get("mode") ?? "show";
+    if (mode !== lesson.mode && ["show", "lecture", "guess"].includes(mode)) lessonMode(mode === "show" ? lesson.mode : mode);
   } else if (found.get("tab") === "motion" && record.motion) openTab("turn");
   else openTab("draw", sheet || undefined);
   return true;
-}
-
-function watchAddress() {
-  addEventListener("hashchange", () => { if (location.hash !== address.written) readAddress(); });
 }
 
 async function copyLink() {

@@ -5,17 +5,23 @@ const asked = { id: null, label: "" };
 function light(id, label) {
   const kin = new Set(chain(id)), after = new Set(), pending = [id];
   while (pending.length) for (const one of children.get(pending.pop()) ?? []) if (!after.has(one)) { after.add(one); pending.push(one); }
-  leaf.sheet.marks.forEach((mark, n) => {
+  paint((mark) => {
     const here = !mark.position || !label || mark.position === label, s = mark.step;
-    const what = !s || !here ? "other" : s === id ? "now" : kin.has(s) ? "kin" : after.has(s) ? "after" : "other";
-    const list = leaf.elements[n].classList;
+    return mark.role === "frame" ? "past" : !s || !here ? "other" : s === id ? "now" : kin.has(s) ? "kin" : after.has(s) ? "after" : "other";
+  });
+}
+
+// Each mark of the sheet as what it is beside the step that is told.
+function paint(as) {
+  leaf.sheet.marks.forEach((mark, n) => {
+    const list = leaf.elements[n].classList, found = as(mark, n);
     list.remove("now", "kin", "after", "other", "past", "later");
-    list.add(mark.role === "frame" ? "past" : what);
+    if (found) list.add(found);
   });
 }
 
 function dim() {
-  for (const element of leaf.elements) element.classList.remove("now", "kin", "after", "other", "past", "later");
+  paint(() => "");
   $("sheet").classList.remove("film", "asked");
   $("hand").replaceChildren();
 }
@@ -53,26 +59,27 @@ function invite() {
     node("p", { class: "hint" }, say(key))), viewList());
 }
 
-function clicked({ p, pixel }) {
-  const n = markAt(p, 9 * pixel);
+function clicked([x, y], pixel) {
+  leaf.outlines ??= outlines(leaf.sheet.marks);
+  const n = nearest(leaf.outlines, leaf.sheet.marks, [x, leaf.height - y], HIT * pixel);
   if (n < 0) { unask(); return; }
   const mark = leaf.sheet.marks[n];
   ask(mark.step, mark.position ?? asked.label);
 }
 
-// Names of steps and results, found by what is typed.
+// Steps and results, found by their names on the sheet with those of their plans, or by their ids.
 function watchFind() {
-  const box = $("find"), found = new Map();
-  box.placeholder = say("find");
-  box.setAttribute("aria-label", say("find"));
-  for (const [id, s] of Object.entries(record.steps)) if (record.sheets.some((sheet) => sheet.plans.has(s.plan))) found.set(id, [id, ""]);
-  for (const [path, result] of Object.entries(record.results)) found.set(path, [result.step, result.at?.[0] ?? ""]);
-  $("names").innerHTML = [...found.keys()].map((name) => `<option value="${plain(name)}">`).join("");
+  const box = $("find"), drawn = Object.entries(record.steps).filter(([, s]) => record.sheets.some((sheet) => sheet.plans.has(s.plan)));
+  const all = [...drawn.map(([id, s]) => ({ name: `${called(s)} · ${planOf(s.plan).title}`, key: id, id })),
+    ...Object.entries(record.results).map(([path, { step: id, at: where }]) => ({ name: path, key: path, id, where: where?.[0] }))];
+  setAll(box, { placeholder: say("find"), "aria-label": say("find") });
+  $("names").replaceChildren(...[...new Set(all.map((one) => one.name))].map((value) => node("option", { value })));
   box.addEventListener("change", () => {
-    const text = box.value.trim(), key = found.has(text) ? text : [...found.keys()].find((name) => name.toLowerCase().includes(text.toLowerCase()));
+    const text = box.value.trim().toLowerCase(), test = (is) => all.find((one) => is(one.name.toLowerCase()) || is(one.key.toLowerCase()));
     if (!text) return;
-    if (!key) { $("panel").hidden = false; $("panel").replaceChildren(node("h2", { role: "status" }, say("nothing found")), node("p", { class: "hint" }, text)); return; }
-    openTab("draw");
-    ask(...found.get(key));
+    const hit = test((name) => name === text) ?? test((name) => name.startsWith(text)) ?? test((name) => name.includes(text));
+    if (hit) { openTab("draw"); ask(hit.id, hit.where ?? ""); return; }
+    $("panel").hidden = false;
+    $("panel").replaceChildren(node("h2", { role: "status" }, say("nothing found")), node("p", { class: "hint" }, box.value));
   });
 }

@@ -25,7 +25,7 @@ function sizeOfAll() {
 
 const LOOKS = 180, PARTS = 4, HALVES = 5, TIMES = 3;
 
-// Whether all points have a place at some angles of the turn, an angle a piece.
+// Whether all points have a place at some angles of the turn, a few angles a piece.
 function* assembles(given) {
   const now = { given, start: record.motion.start, courses: coursesOf(given), loads: [] }, { all } = record.motion;
   if (now.courses.some(({ places }) => places.some(([x]) => Number.isNaN(x)))) return false;
@@ -71,17 +71,17 @@ function handy(x, step2, g) {
   return Number((Math.round(x / by / digit) * digit).toPrecision(12)) * by;
 }
 
-// One slider for a number, two for a point.
-function slidersOf(g) {
+// One slider for a number, two for a point, called by their heading and letter.
+function slidersOf(g, heading) {
   const parts2 = Array.isArray(g.value) ? [0, 1] : [null];
   return parts2.map((i) => {
     const own = i === null ? g.value : g.value[i], now = () => (i === null ? machine.given[g.name] : machine.given[g.name][i]), limits = limitsOf(g, i);
     const letter = g.symbol ? lettered(g.symbol) : plain(g.name), name = `${letter}${i === null ? "" : `<sub>${"xy"[i]}</sub>`}`;
-    const out = node("output"), input = node("input", { type: "range", "aria-label": `${g.name}${i === null ? "" : ` ${"xy"[i]}`}` });
+    const out = node("output"), spoken = `${heading}: ${called(g)}${i === null ? "" : ` ${"xy"[i]}`}`, input = node("input", { type: "range", "aria-label": spoken });
     const range = ([low, high]) => { Object.assign(input, { min: low, max: high, step: (high - low) / 400 }); input.value = now(); };
     range([limits.low, limits.high]);
     if (limits.ends) atLeisure(limits.ends(), ([low, high]) => { Object.assign(limits, { low, high, ends: null }); range([low, high]); });
-    const row = node("label", { class: "slide", title: g.name }, node("span", { html: name }), out, input);
+    const row = node("label", { class: "slide", title: spoken }, node("span", { html: name }), out, input);
     const refresh = () => { out.textContent = isTable(g) ? `×${digits(now())}` : told(now(), g.unit, g.shown); row.classList.toggle("changed", now() !== own); input.value = now(); };
     const put = (x) => setGiven(g.name, i === null ? x : machine.given[g.name].map((v, k) => (k === i ? x : v)));
     let before = null;
@@ -115,54 +115,23 @@ function showEdits() {
   if (parent !== window) parent.postMessage({ file: projectFile() }, "*");  // of a page that shows this one beside the project file
 }
 
-// The project file with the changed numbers in their lines.
+// The project file with the changed numbers in their places; those of a load's table are multiplied.
 function projectFile() {
-  const lines = record.file.split("\n");
-  for (const g of changed()) {
-    if (g.line === undefined) continue;
-    if (isTable(g)) { multiplyTable(lines, g); continue; }
-    const value = machine.given[g.name], n = g.line - 1, [unit, by] = g.shown ?? [g.unit.replaceAll("*", "·"), 1];
-    const text = (x) => { const number = Number((x / by).toPrecision(12)); return unit ? `"${number} ${unit}"` : String(number); };
-    const written = Array.isArray(value) ? `[${value.map(text).join(", ")}]` : text(value);
-    const place = /\[(\d+)\]$/.exec(g.name), key = /([^.\[\]]+)(\[\d+\])?$/.exec(g.name)[1]; // one of a row of numbers; in a line or in { }
-    const behind = new RegExp(`((?:^|[{,\\s"'])${key.replace(/[^\p{L}\p{N}_]/gu, "\\$&")}["']?\\s*=\\s*)(\\[[^\\]]*\\]|"[^"]*"|[^#\\s,}]+)`, "u");
-    let at = -1;
-    lines[n] = lines[n].replace(behind, (all, before2, old) => before2 + (place
-      ? old.replace(/"[^"]*"|[\d.eE+-]+/g, (one) => (++at === Number(place[1]) ? written : one)) : written));
-  }
-  return lines.join("\n");
+  const signs = [...record.file], puts = changed().flatMap((g) => (g.places ?? []).map(([from, to], n) => {
+    const [unit, by] = g.shown ?? [g.unit.replaceAll("*", "·"), 1], of = (x) => Number(x.toPrecision(12)), number = of([machine.given[g.name]].flat()[n] / by);
+    const times = (x) => of(Number(x.replace(",", ".")) * machine.given[g.name]), old = signs.slice(from, to).join("");
+    return { from, to, text: isTable(g) ? old.replace(/[-+]?\d[\d.,]*(?:[eE][-+]?\d+)?/, times) : unit ? `"${number} ${unit}"` : String(number) };
+  }));
+  for (const { from, to, text } of puts.sort((a, b) => b.from - a.from)) signs.splice(from, to - from, text);
+  return signs.join("");
 }
 
-// The values of a load's table times a factor, from its line on: what stands last in each innermost row.
-function multiplyTable(lines, g) {
-  const index = /\[(\d+)\]$/.exec(g.name), factor = machine.given[g.name];
-  let depth = 0, table = -1, rows = false;
-  for (let n = g.line - 1; n < lines.length; n++) {
-    const [, code, comment] = /^((?:"[^"]*"|[^"#])*)(.*)$/.exec(lines[n]);
-    lines[n] = code.replace(/\[|\]|"[^"]*"|[-+\d.eE]+(?=\s*\])/g, (sign, at) => {
-      if (sign === "[") { depth++; if (index && depth === 2) table++; rows = true; return sign; }
-      if (sign === "]") { depth--; return sign; }
-      const last = /^\s*\]/.test(code.slice(at + sign.length)), own = !index || table === Number(index[1]);
-      if (!last || !own || depth < 2) return sign;
-      return sign.replace(/[-+]?\d[\d.,]*(?:[eE][-+]?\d+)?/, (x) => String(Number((Number(x.replace(",", ".")) * factor).toPrecision(12))));
-    }) + comment;
-    if (rows && depth === 0) return;
-  }
-}
+const save = () => download(record.filename, projectFile(), "application/toml");
 
-function save() {
-  const link = node("a", { download: record.filename, href: `data:application/toml;charset=utf-8,${encodeURIComponent(projectFile())}` });
-  link.click();
-}
-
-// Where the mechanism does not assemble: what is missing, and for which part of the turn.
-function tellLost(first, values) {
-  const place = $("lost");
-  if (!place) return;
-  place.hidden = !first;
-  if (!first) return;
-  const gap = gapOf(first[0], values);
-  place.textContent = `${say("does not assemble at this angle")}: ${stepOf(first[0]).name}${gap ? `, ${say("gap")} ${told(gap, "m")}` : ""}`;
+// Where the mechanism does not assemble: which place there is not, and by how much it is missed.
+function lostWords([id], values) {
+  const gap = gapOf(id, values);
+  return `${plain(say("does not assemble at this angle"))}: ${indexed(stepOf(id).name)}${gap ? `, ${plain(say("gap"))} ${told(gap, "m")}` : ""}`;
 }
 
 // By how much the third leg of a group of class III misses what the other two let its corner reach, m; 0 where it does not.
@@ -177,31 +146,29 @@ function gapOfCourses() {
   return there.length ? Math.min(...there) : 0;
 }
 
+// Arguments of a step at the present numbers.
+const argumentsNow = (id, values) => stepOf(id).args.map((arg) => {
+  const place = record.motion.all.results[arg.step];
+  return arg.step === undefined ? machine.given[arg.name] ?? arg.given : place ? taken(place, values) : stepOf(arg.step).value;
+});
+
 // By how much two arcs, or an arc and a line, miss each other, m.
 function gapOf(id, values) {
-  const s = stepOf(id), own = (arg) => {
-    if (arg.step !== undefined) { const place = record.motion.all.results[arg.step]; return place ? taken(place, values) : stepOf(arg.step).value; }
-    return machine.given[arg.name] ?? arg.given;
-  };
-  const args = s.args.map(own);
-  if (s.rule.startsWith("arc cuts arc")) { const d = size(sub(args[2], args[0])); return Math.max(d - args[1] - args[3], Math.abs(args[1] - args[3]) - d); }
-  if (s.rule.startsWith("arc cuts line")) return Math.abs(cross(args[3], sub(args[2], args[0]))) - args[1];
+  const { rule } = stepOf(id), args = argumentsNow(id, values);
+  if (rule.startsWith("arc cuts arc")) { const d = size(sub(args[2], args[0])); return Math.max(d - args[1] - args[3], Math.abs(args[1] - args[3]) - d); }
+  if (rule.startsWith("arc cuts line")) return Math.abs(cross(args[3], sub(args[2], args[0]))) - args[1];
   return gapOfCourses();
 }
 
+// Which given numbers stand under which heading.
+const GROUPS = { lengths: (g) => g.unit === "m", angles: (g) => g.unit === "rad", speeds: (g) => ["rad/s", "m/s"].includes(g.unit), loads: isLoad, masses: (g) => ["kg", "kg*m2"].includes(g.unit) };
+
 function changePanel() {
-  const wanted = record.motion.givens.filter((g) => g.line !== undefined && (isLoad(g) ? isTable(g) || /\.value$/.test(g.name)
-    : ["m", "kg", "kg*m2", "rad/s", "rad", "m/s", "m/s2"].includes(g.unit) && g.symbol));
-  const group = (title, units) => {
-    const own = wanted.filter((g) => (units ? !isLoad(g) && units.includes(g.unit) : isLoad(g)) && !Array.isArray(g.value));
-    return own.length ? [node("h3", {}, say(title)), ...own.flatMap(slidersOf)] : [];
-  };
-  const button = (id, key, act) => node("button", { type: "button", class: "chip", id, onclick: act }, say(key));
-  const fixed2 = wanted.filter((g) => Array.isArray(g.value));
-  const found = [node("h2", {}, say("in motion")), node("p", { class: "bad", id: "lost", role: "alert", hidden: true }), node("p", { class: "hint" }, say("drag the crank pin or a slider")),
-    node("div", { class: "chips" }, button("undo", "undo", undo), button("redo", "redo", redo), button("reset", "reset", reset), button("save", "save as project file", save)),
+  const wanted = record.motion.givens.filter((g) => g.places && (isLoad(g) ? isTable(g) || g.name.endsWith(".value") : g.symbol)), chipOf = (id, key, act) => button(say(key), act, { id, class: "chip" });
+  const group = (title, test) => { const own = wanted.filter(test); return own.length ? [node("h3", {}, say(title)), ...own.flatMap((g) => slidersOf(g, say(title)))] : []; };
+  return [node("h2", {}, say("in motion")), node("p", { class: "bad", id: "lost", role: "alert", hidden: true }), node("p", { class: "hint" }, say("drag the crank pin or a slider")),
+    node("div", { class: "chips" }, chipOf("undo", "undo", undo), chipOf("redo", "redo", redo), chipOf("reset", "reset", reset), chipOf("save", "save as project file", save)),
     node("p", { class: "hint", id: "stale", hidden: true }, say("by the flywheel")),
-    ...group("lengths", ["m"]), ...group("angles", ["rad"]), ...group("speeds", ["rad/s", "m/s"]), ...group("loads"), ...group("masses", ["kg", "kg*m2"]),
-    ...(fixed2.length ? [node("h3", {}, say("fixed points")), ...fixed2.flatMap(slidersOf)] : [])];
-  return found;
+    ...Object.entries(GROUPS).flatMap(([title, test]) => group(title, (g) => test(g) && (test === isLoad || !isLoad(g)) && !Array.isArray(g.value))),
+    ...group("fixed points", (g) => Array.isArray(g.value) && g.unit === "m" && !isLoad(g))];
 }

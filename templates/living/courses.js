@@ -3,11 +3,6 @@
 const NODES = 720, FINEST = 7, SHRINKING = 0.25, SCAN = 1440;
 const SURELY_NEAR = Math.PI / 4, ALIKE_POSES = Math.PI / 18000;
 
-const determinantOf = (k, all) => {
-  const [x, y, m] = [all.map((c) => c.n[0]), all.map((c) => c.n[1]), all.map((c) => momentAbout(k, c))];
-  return m[0] * (x[1] * y[2] - x[2] * y[1]) - m[1] * (x[0] * y[2] - x[2] * y[0]) + m[2] * (x[0] * y[1] - x[1] * y[0]);
-};
-
 // First corners of triangles of a direction whose legs i and j hold: two, or one.
 function placesOn(u, i, j, legs) {
   const [[roundOne, p, v, r], [roundTwo, q, w, s]] = [i, j].map((n) => {
@@ -51,7 +46,7 @@ function modesOn(legs) {
 
 // The triangle on other legs, if Newton's corrections shrink at once; else null.
 function stepped([k, u], legs) {
-  const whole = extent(legs), sign = Math.sign(determinantOf(k, conditions(k, u, legs)));
+  const whole = extent(legs), sign = Math.sign(determinantOf(coefficients(k, conditions(k, u, legs))));
   let last = Infinity;
   for (let i = 0; i < 12; i++) {
     const [dk, turned] = correction(k, u, legs);
@@ -63,7 +58,7 @@ function stepped([k, u], legs) {
     last = moved;
   }
   const all = conditions(k, u, legs);
-  if (!(Math.max(...all.map((c) => Math.abs(c.f))) < 1e-10 * whole) || Math.sign(determinantOf(k, all)) !== sign) return null;
+  if (!(Math.max(...all.map((c) => Math.abs(c.f))) < 1e-10 * whole) || Math.sign(determinantOf(coefficients(k, all))) !== sign) return null;
   return [k, straight(u)];
 }
 

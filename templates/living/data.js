@@ -1,28 +1,21 @@
 // The record: unpacked once, asked by everything else.
 
-const $ = (id) => document.getElementById(id);
-
 async function unpacked(text) {
-  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const stream = new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("gzip"));
   return JSON.parse(await new Response(stream).text());
 }
 
 let record;
 let children = new Map();
 
-const say = (key, values = {}) => (record.words[key] ?? key).replace(/\{(\w+)\}/g, (all, name) => values[name] ?? all);
 const stepOf = (id) => record.steps[id];
 const planOf = (id) => record.plans.find((plan) => plan.id === id);
 
 function takeRecord(found) {
   record = found;
+  speak(record.words);
   for (const [id, step] of Object.entries(record.steps)) {
-    for (const arg of step.args) {
-      if (arg.step === undefined) continue;
-      if (!children.has(arg.step)) children.set(arg.step, []);
-      children.get(arg.step).push(id);
-    }
+    for (const { step: of } of step.args) if (of !== undefined) children.set(of, [...(children.get(of) ?? []), id]);
   }
 }
 
@@ -54,6 +47,7 @@ function digits(x) {
   return String(Number(x.toPrecision(5))).replace(".", decimal()).replace("-", "−");
 }
 
+const called = ({ symbol, name }) => (symbol || name).replace(/[_^]\{([^}]*)\}|[_^]/g, "$1"); // without its markup
 const calledView = (view) => record.words.views[view] ?? view;
 
 const UNITS = () => record.words.units ?? {};
@@ -65,28 +59,14 @@ function shown(value, unit) {
 }
 
 // All that a step is made of, itself among them, arguments first.
-function chain(id, seen = new Set()) {
-  const found = [], pending = [[id, false]];
-  while (pending.length) {
-    const [one, ready] = pending.pop();
-    if (ready) { found.push(one); continue; }
-    if (seen.has(one) || !stepOf(one)) continue;
-    seen.add(one);
-    pending.push([one, true]);
-    for (const arg of [...stepOf(one).args].reverse()) if (arg.step !== undefined) pending.push([arg.step, false]);
-  }
+function chain(id, seen = new Set(), found = []) {
+  if (seen.has(id) || !stepOf(id)) return found;
+  seen.add(id);
+  for (const arg of stepOf(id).args) chain(arg.step, seen, found);
+  found.push(id);
   return found;
 }
 
-function node(name, attributes = {}, ...inside) {
-  const found = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) {
-    if (key.startsWith("on")) found.addEventListener(key.slice(2), value);
-    else if (key === "html") found.innerHTML = value;
-    else if (value !== false && value !== undefined) found.setAttribute(key, value === true ? "" : value);
-  }
-  found.append(...inside);
-  return found;
-}
-
-const still = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
+// A button, a slider that is called by a word.
+const control = (id, sign, key, act, more = {}) => button(sign, act, { id: id || false, "aria-label": say(key), title: say(key), ...more });
+const range = (id, key, more, act) => node("input", { type: "range", id: id || false, class: "scrub", "aria-label": say(key), ...more, oninput: (event) => act(Number(event.target.value)) });

@@ -1,37 +1,42 @@
-// The crank pin as a grip: it is dragged round, the plans follow.
+// What is dragged, or moved by the arrow keys: the pin of the crank, a guess.
 
-const grip = { element: null, mark: null };
+const FINGER = 22, GRIP = 9; // radius that a finger hits, and what is seen, pixels
 
-function makeGrip() {
-  const card = stage.cards[0];
-  grip.mark = card?.marks.find((mark) => mark.role === "link");
-  if (!grip.mark) return;
-  grip.element = svgNode("circle", { class: "grip", r: 6, tabindex: 0, role: "slider", "aria-label": say("crank pin: drag it round"), "aria-valuemin": 0, "aria-valuemax": 360 });
-  card.svg.setAttribute("role", "group"); // an image holds nothing that is taken hold of
-  card.svg.querySelector(".over").append(grip.element);
-  grip.element.addEventListener("pointerdown", (event) => { spin(false); grip.element.setPointerCapture(event.pointerId); event.preventDefault(); });
-  grip.element.addEventListener("pointermove", (event) => {
-    if (!grip.element.hasPointerCapture(event.pointerId)) return;
-    const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(card.svg.getScreenCTM().inverse());
-    const centre = placer(parts(machine.phi), card.shrunk).point(grip.mark, record.motion.crank[0]), phi = Math.atan2(-p.y - centre[1], p.x - centre[0]);
-    const lead = pinAngle() - machine.phi;
-    turn(machine.phi + mod(phi - lead - machine.phi + Math.PI, 2 * Math.PI) - Math.PI);
+// A grip over a card, its place told in mm of the card; `nudged` is given by how much it turns, degrees, and lengthens.
+function makeHandle({ svg }, key, dragged, nudged) {
+  const handle = svgNode("g", { class: "handle", tabindex: 0, role: "slider", "aria-label": say(key), "aria-valuemin": 0, "aria-valuemax": 360 });
+  handle.append(svgNode("circle", { class: "touch" }), svgNode("circle", { class: "grip" }));
+  svg.setAttribute("role", "group"); // an image holds nothing that is taken hold of
+  svg.append(handle);
+  handle.addEventListener("pointerdown", (event) => { spin(false); handle.setPointerCapture(event.pointerId); event.preventDefault(); });
+  handle.addEventListener("pointermove", (event) => {
+    if (!handle.hasPointerCapture(event.pointerId)) return;
+    const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+    dragged([p.x, -p.y]);
   });
-  grip.element.addEventListener("keydown", (event) => {
-    const by = { ArrowRight: -1, ArrowUp: 1, ArrowLeft: 1, ArrowDown: -1 }[event.key];
-    if (by) { event.preventDefault(); event.stopPropagation(); turn(machine.phi + by * Math.PI / 180); }
+  handle.addEventListener("keydown", (event) => {
+    const by = { ArrowRight: [-1, 0], ArrowLeft: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (by) { event.preventDefault(); event.stopPropagation(); nudged(...by); }
   });
+  return handle;
 }
 
-function pinAngle() {
-  const [pivot, pin] = record.motion.crank.map((id) => valueOf(id, machine.phi)), d = sub(pin, pivot);
-  return Math.atan2(d[1], d[0]);
+function placeHandle(handle, [x, y], degrees, text = `${Math.round(degrees)}°`) {
+  const pixel = 1 / handle.getScreenCTM().a;
+  handle.setAttribute("transform", `translate(${fixed(x)} ${fixed(-y)})`);
+  [FINGER, GRIP].forEach((r, n) => handle.children[n].setAttribute("r", fixed(r * pixel)));
+  setAll(handle, { "aria-valuenow": Math.round(mod(degrees, 360)), "aria-valuetext": text });
 }
 
-function placeGrip(placed) {
-  if (!grip.element) return;
-  const [x, y] = placed.point(grip.mark, record.motion.crank[1]);
-  grip.element.setAttribute("cx", fixed(x));
-  grip.element.setAttribute("cy", fixed(-y));
-  grip.element.setAttribute("aria-valuenow", Math.round(mod(machine.phi * 180 / Math.PI, 360)));
+const degreesOf = ([x, y]) => Math.atan2(y, x) * 180 / Math.PI;
+
+// The pin of the crank of a card; gives what puts it to its place.
+function makeGrip(card) {
+  const mark = card?.live.plan === "positions" && card.marks.find((one) => one.role === "link"), [pivot, pin] = record.motion.crank;
+  if (!mark) return () => {};
+  const handle = makeHandle(card, "crank pin: drag it round", (p) => {
+    const there = degreesOf(sub(p, placer(parts(machine.phi), card.shrunk).point(mark, pivot))), lead = degreesOf(sub(valueOf(pin, machine.phi), valueOf(pivot, machine.phi)));
+    turn(machine.phi + (mod(there - lead + 180, 360) - 180) * Math.PI / 180);
+  }, (by, more) => turn(machine.phi + (by + more) * Math.PI / 180));
+  return (placed) => placeHandle(handle, placed.point(mark, pin), machine.phi * 180 / Math.PI);
 }

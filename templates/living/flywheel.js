@@ -88,11 +88,11 @@ function jumpsOf({ runs, load, tables, same, share, endless }, given) {
 
 // Where the diagram of a load jumps, or has a corner that shows.
 function cornersOf(name, given) {
-  const input = record.motion.wheel.inputs.find((one) => one.diagram === name), { x, y } = curveOf(input, given[name]);
+  const input = record.motion.wheel.inputs.find((one) => one.diagram === name), { x, y, law } = curveOf(input, given[name]);
   const most = Math.max(...y.map(Math.abs)), found = [];
   for (let i = 0; i + 1 < x.length; i++) {
     if (x[i] === x[i + 1]) { if (y[i] !== y[i + 1]) found.push(x[i]); continue; }
-    if (input.smooth || !i || x[i - 1] === x[i]) continue;
+    if (law === "cubic" || !i || x[i - 1] === x[i]) continue;
     const chord = y[i - 1] + (x[i] - x[i - 1]) / (x[i + 1] - x[i - 1]) * (y[i + 1] - y[i - 1]);
     if (Math.abs(y[i] - chord) >= CORNER * most) found.push(x[i]);
   }

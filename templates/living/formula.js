@@ -8,58 +8,30 @@ const SIGNS = { cdot: "·", times: "×", perp: "⟂", ldots: "…", ",": " ", "%
 const plain = (text) => String(text).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;").replace(/"/g, "&quot;");
 
 function mathml(latex) {
-  const tokens = latex.match(/\\[A-Za-z]+|\\.|\d+(?:[.,]\d+)?|[^\s]|\s+/g) ?? [];
+  const tokens = latex.match(/\\(?:text|mathrm)\s*\{[^{}]*\}|\\[A-Za-z]+|\\.|\d+(?:[.,]\d+)?|\S/g) ?? [];
   let n = 0;
-  const peek = () => { while (n < tokens.length && !tokens[n].trim()) n++; return tokens[n]; };
-  const raw = () => {
-    let text = "", depth = 0;
-    do {
-      const t = tokens[n++];
-      if (t === "{" && depth++ === 0) continue;
-      if (t === "}" && --depth === 0) break;
-      text += t;
-    } while (n < tokens.length && depth > 0);
-    return text;
-  };
-  const group = () => {
-    if (peek() !== "{") return atom();
-    n++;
-    const found = row("}");
-    n++;
-    return found;
-  };
-  const fence = () => { const t = peek(); n++; return t === "." ? "" : `<mo>${plain(t.replace("\\", ""))}</mo>`; };
-  function atom() {
-    const t = peek();
-    n++;
-    if (t === "{") { n--; return group(); }
-    if (/^\d/.test(t)) return `<mn>${t.replace(".", decimal())}</mn>`;
-    if (!t.startsWith("\\")) return /[\p{L}]/u.test(t) ? `<mi>${plain(t)}</mi>` : `<mo>${t === "-" ? "−" : t === "'" ? "′" : plain(t)}</mo>`;
-    const name = t.slice(1);
-    if (name === "frac") return `<mfrac>${group()}${group()}</mfrac>`;
-    if (name === "sqrt") return `<msqrt>${group()}</msqrt>`;
-    if (name === "overline") return `<mover>${group()}<mo>¯</mo></mover>`;
-    if (name === "text" || name === "mathrm") { peek(); return `<mtext>${plain(raw())}</mtext>`; }
-    if (name === "left") { const open = fence(), inner = row("\\right"); n++; return `<mrow>${open}${inner}${fence()}</mrow>`; }
-    if (GREEK[name]) return `<mi>${GREEK[name]}</mi>`;
-    if (SIGNS[name]) return `<mo>${SIGNS[name]}</mo>`;
-    return `<mi>${plain(name)}</mi>`;
-  }
-  function row(end) {
+  const row = (end) => {
     let found = "";
-    while (peek() !== undefined && peek() !== end) {
-      let one = atom(), below = "", above = "";
-      while (peek() === "_" || peek() === "^") {
-        const sign = peek();
-        n++;
-        if (sign === "_") below = group(); else above = group();
-      }
-      if (below && above) one = `<msubsup>${one}${below}${above}</msubsup>`;
-      else if (below) one = `<msub>${one}${below}</msub>`;
-      else if (above) one = `<msup>${one}${above}</msup>`;
-      found += one;
-    }
+    while (n < tokens.length && tokens[n] !== end) found += scripted();
+    n++;
     return `<mrow>${found}</mrow>`;
+  };
+  const fence = () => { const t = tokens[n++]; return t === "." ? "" : `<mo>${plain(t.replace("\\", ""))}</mo>`; };
+  const COMMANDS = { frac: () => `<mfrac>${atom()}${atom()}</mfrac>`, sqrt: () => `<msqrt>${atom()}</msqrt>`, overline: () => `<mover>${atom()}<mo>¯</mo></mover>`,
+    left: () => `<mrow>${fence()}${row("\\right")}${fence()}</mrow>` };
+  function atom() {
+    const t = tokens[n++], name = t.slice(1), [, words] = /^\\(?:text|mathrm)\s*\{(.*)\}$/.exec(t) ?? [];
+    if (t === "{") return row("}");
+    if (words !== undefined) return `<mtext>${plain(words)}</mtext>`;
+    if (/^\d/.test(t)) return `<mn>${t.replace(".", decimal())}</mn>`;
+    if (!t.startsWith("\\")) return /\p{L}/u.test(t) ? `<mi>${plain(t)}</mi>` : `<mo>${t === "-" ? "−" : t === "'" ? "′" : plain(t)}</mo>`;
+    return COMMANDS[name]?.() ?? (SIGNS[name] ? `<mo>${SIGNS[name]}</mo>` : `<mi>${GREEK[name] ?? plain(name)}</mi>`);
+  }
+  function scripted() {
+    const base = atom(), at = {};
+    while (tokens[n] === "_" || tokens[n] === "^") at[tokens[n++]] = atom();
+    const tag = (at._ ? "sub" : "") + (at["^"] ? "sup" : "");
+    return tag ? `<m${tag}>${base}${at._ ?? ""}${at["^"] ?? ""}</m${tag}>` : base;
   }
   return `<math display="block">${row()}</math>`;
 }

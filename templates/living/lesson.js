@@ -1,7 +1,7 @@
 // The lesson of a polygon: the mechanism, the plan beside it, above them the vector equation that fills in as vectors are drawn.
 // Each vector is born at the mechanism: the link whose direction is taken glows, turns, slides to its place in the plan.
 
-const lesson = { told: null, at: -1, mode: "show", cards: [], moving: 0 };
+const lesson = { told: null, at: -1, asks: false, mode: "show", cards: [], grip: () => {} };
 
 const stopNow = () => lesson.told.stops[lesson.at];
 const here = (id) => valueOf(id, machine.phi);
@@ -16,18 +16,13 @@ const calledHere = (id) => indexed(stepOf(id).symbol ?? stepOf(id).name);
 
 // What a millimetre stands for: as on the sheet, or the next standard scale with which the plan stays below a sheet's width.
 function lessonScale() {
-  const mu = lesson.cards[1].marks[0].mu[0], widest = Math.max(...lesson.told.stops.map(endsOf).filter(Boolean).map(([a, b]) => apart(a, b)).filter(Number.isFinite), 0) / mu;
+  const mu = lesson.cards[1].marks[0].mu[0], widest = Math.max(...lesson.told.stops.filter((stop) => stop.ends).map((stop) => apart(...stop.ends)).filter(Number.isFinite), 0) / mu;
   for (let ten = 1; ; ten *= 10) for (const times of [1, 2, 2.5, 4, 5]) if (widest / (times * ten) <= 320 || ten > 1e9) return mu * times * ten;
 }
 
-// Ends of the vector of a stop, ids of points of the plan.
-function endsOf(stop) {
-  if (stop.kind === "lay" || stop.kind === "similar") return [stop.tail, stop.step];
-  if (stop.kind === "rate" || stop.kind === "close") return [stop.tail, stop.head];
-  return null;
-}
-
-const isNothing = (stop) => { const ends = endsOf(stop); return ends && stop.kind !== "rate" && apart(...ends) / lessonScale() < 0.05; };
+const isNothing = (stop) => stop.ends && stop.kind !== "rate" && apart(...stop.ends) / lessonScale() < 0.05;
+// Segments that are measured when a stop is drawn, by their ends.
+const measuredAt = (stop) => (stop.kind === "meet" ? stop.of.map((tail) => [tail, stop.step]) : stop.ends ? [stop.ends] : []);
 const segmentName = (a, b) => `|${calledHere(a)}${/^\d/.test(stepOf(a).name) ? "–" : ""}${calledHere(b)}|`;
 
 // A product with so many digits of its factors that what is printed gives what is printed.
@@ -45,14 +40,14 @@ function formulaOf(stop) {
   const unit = unitOf(planOf(lesson.told.plan).unit), mu = lessonScale();
   if (stop.kind === "line") return [`${stop.across ? "⟂" : "∥"} ${indexed(stop.name)}`];
   if (stop.rate) {
-    const w = Math.abs(here(stop.rate)), l = apart(...stop.along), value = apart(...endsOf(stop)), of = stop.twice ? `V<sub>${indexed(stop.name)}</sub>` : `l<sub>${indexed(stop.name)}</sub>`;
+    const w = Math.abs(here(stop.rate)), l = apart(...stop.along), value = apart(...stop.ends), of = stop.twice ? `V<sub>${indexed(stop.name)}</sub>` : `l<sub>${indexed(stop.name)}</sub>`;
     return [`${stop.letter && `${symbolMarkup(stop.letter.replace("̅", ""))} = `}${stop.twice ? "2·" : ""}${calledHere(stop.rate)}${stop.power === 2 ? "²" : ""}·${of}`,
       `= ${product([...(stop.twice ? [[2, 1]] : []), [w, stop.power], [l, 1]], value, "=")} ${unit}`, sized(value)];
   }
-  if (stop.force) return [`${calledHere(stop.force)} = ${rounded(apart(...endsOf(stop)), 4)} ${unit}`, sized(apart(...endsOf(stop)))];
+  if (stop.force) return [`${calledHere(stop.force)} = ${rounded(apart(...stop.ends), 4)} ${unit}`, sized(apart(...stop.ends))];
   if (stop.kind === "similar") {
-    const [q, b, d] = stop.places, [nq, nb, nd] = [stop.names[2], stop.names[3], stop.names[4]].map(indexed), mm = apart(...endsOf(stop)) / mu;
-    return [`${segmentName(...endsOf(stop))} = ${segmentName(stop.tail, stop.to)}·${nq}${nd} : ${nq}${nb}`,
+    const [q, b, d] = stop.places, [nq, nb, nd] = [stop.names[2], stop.names[3], stop.names[4]].map(indexed), mm = apart(...stop.ends) / mu;
+    return [`${segmentName(...stop.ends)} = ${segmentName(stop.tail, stop.to)}·${nq}${nd} : ${nq}${nb}`,
       `= ${product([[apart(stop.tail, stop.to) / mu, 1], [apart(q, d), 1], [apart(q, b), -1]], mm, "=")} ${UNITS().mm}`];
   }
   if (stop.kind === "rate") {
@@ -60,7 +55,7 @@ function formulaOf(stop) {
     return [`|${calledHere(stop.step)}| = ${stepOf(stop.step).unit.endsWith("2") ? "a<sup>τ</sup>" : "V"} : l<sub>${indexed(stop.name)}</sub>`, `= ${product([[value * l, 1], [l, -1]], value, "=")} ${unitOf(stop.step)}`];
   }
   if (stop.kind === "meet" && !stop.of.length) return [];
-  const [a, b] = stop.kind === "close" ? endsOf(stop) : stop.kind === "meet" ? [stop.of[0], stop.step] : [];
+  const [a, b] = stop.kind === "close" ? stop.ends : stop.kind === "meet" ? [stop.of[0], stop.step] : [];
   return a ? [`${segmentName(a, b)}·μ = ${product([[apart(a, b) / mu, 1], [mu, 1]], apart(a, b), "=")} ${unit}`] : [];
 }
 
@@ -71,8 +66,7 @@ function sentencesOf(stop) {
   const force = Array.isArray(here(stop.step)) && value ? `${rounded(size(here(stop.step)), 5)} ${unitOf(stop.step)}` : value;
   const found = [indexed(stop.say.replace("{value}", force))];
   if (stop.kind === "line" || stop.kind === "rate" || stop.kind === "close") return found;
-  const pairs = stop.kind === "meet" ? stop.of.map((tail) => [tail, stop.step]) : [endsOf(stop)].filter(Boolean);
-  for (const [a, b] of pairs) {
+  for (const [a, b] of measuredAt(stop)) {
     if (apart(a, b) / lessonScale() < 0.05) found.push(say("the same point", { name: calledHere(b), other: calledHere(a) }));
     else found.push(say("segment", { name: segmentName(a, b).slice(1, -1), mm: inMm(apart(a, b)) }));
   }
@@ -80,45 +74,18 @@ function sentencesOf(stop) {
 }
 
 function tellLesson() {
-  const stop = stopNow(), words = $("told"), all = lesson.told.stops.length;
+  const stop = stopNow(), all = lesson.told.stops.length, changes = changed().length ? `, ${say("with other numbers")}` : "";
   $("lessonScrub").value = lesson.at + 1;
   $("lessonScrub").setAttribute("aria-valuetext", stop ? `${lesson.at + 1}. ${stop.title}` : "0");
   $("lessonBack").disabled = lesson.at < 0;
-  $("lessonNext").disabled = lesson.at === all - 1;
-  const moment = momentOf(machine.phi), changes = record.motion && changed().length ? `, ${say("with other numbers")}` : "";
-  $("lessonPhi").textContent = moment;
-  if (!stop) { words.innerHTML = `<h2>${plain(planOf(lesson.told.plan).title)}${plain(changes)}</h2><p>${plain(say("begin"))}</p>`; return; }
-  const head = `<h2><span class="count">${plain(say("step {n} of {all}", { n: lesson.at + 1, all }))}</span> ${plain(stop.title)}${plain(changes)}</h2>`;
-  words.innerHTML = `${head}<p>${sentencesOf(stop).join(" ")}</p>${stop.why ? `<p class="hint">${plain(stop.why)}</p>` : ""}`;
+  $("lessonNext").disabled = lesson.at === all - 1 && !lesson.asks;
+  const head = node("h2", { html: stop ? `<span class="count">${plain(say("step {n} of {all}", { n: lesson.at + 1, all }))}</span> ${plain(stop.title)}${plain(changes)}` : plain(planOf(lesson.told.plan).title + changes) });
+  if (lesson.asks) $("told").replaceChildren(head, ...askGuess(stop));
+  else if (!stop) $("told").replaceChildren(head, node("p", {}, say("begin")));
+  else $("told").replaceChildren(head, node("p", { html: sentencesOf(stop).join(" ") }), ...(stop.why ? [node("p", { class: "hint" }, stop.why)] : []), ...verdict());
 }
 
 // --- the equation ---------------------------------------------------------------------------------------------------------
-
-// When a term is drawn, and when its line of unknown length is: numbers of stops.
-function termStops(term) {
-  const all = lesson.told.stops, of = (id) => all.findIndex((stop) => stop.kind !== "line" && stop.step === id);
-  const closes = all.findIndex((stop) => stop.kind === "close" && stop.tail === term.tail && stop.head === term.head);
-  const line = all.findIndex((stop) => stop.kind === "line" && [term.tail, term.head].includes(stop.tail) && [term.tail, term.head].includes(stop.step));
-  return { drawn: closes >= 0 ? closes : Math.max(of(term.tail), of(term.head)), line };
-}
-
-// The equation that is filled in: the last of which something is drawn beyond what those before it were made of.
-function equationNow() {
-  let now = lesson.told.equations[0], met = -1;
-  for (const one of lesson.told.equations) {
-    const begins = one.sides.flat().flatMap((term) => Object.values(termStops(term))).filter((n) => n > met);
-    if (Math.min(...begins) <= lesson.at) now = one;
-    met = lesson.told.stops.findIndex((stop) => stop.kind === "meet" && stop.step === one.end);
-  }
-  return now;
-}
-
-// Colours of vectors by their ends: a term and its vector have one.
-function colours() {
-  const found = new Map();
-  for (const { sides } of lesson.told.equations) sides.flat().forEach((term, n) => { if (!found.has(`${term.tail} ${term.head}`)) found.set(`${term.tail} ${term.head}`, n % 6 + 1); });
-  return found;
-}
 
 // A letter with a bar, its index and its sign above.
 function symbolMarkup(symbol) {
@@ -127,24 +94,23 @@ function symbolMarkup(symbol) {
   return `<span class="q"><i class="${base.includes("̅") ? "bar" : ""}">${plain(base.replace("̅", ""))}</i><span class="ss"><sup>${bare(above)}</sup><sub>${bare(below)}</sub></span></span>`;
 }
 
-function drawEquation() {
-  const place = $("equation"), one = equationNow(), found = [], colour = colours();
+function drawEquation(seen) {
+  const place = $("equation"), one = lesson.told.equations[stopNow()?.equation ?? 0], found = [];
   place.replaceChildren();
   if (!one) return;
   one.sides.forEach((side, n) => {
     if (n || one.head !== "0") found.push(node("span", { class: "op" }, n ? "=" : ""));
     side.forEach((term, i) => {
       if (i) found.push(node("span", { class: "op" }, "+"));
-      const { drawn, line } = termStops(term), known = term.times === 2, on = lesson.at, bars = known ? (on >= drawn ? 2 : 0) : on >= Math.min(drawn, line < 0 ? drawn : line) ? 1 : 0;
+      const { drawn, line } = term, known = term.times === 2, on = seen, bars = known ? (on >= drawn ? 2 : 0) : on >= Math.min(drawn, line < 0 ? drawn : line) ? 1 : 0;
       const below = on >= drawn ? inMm(apart(term.tail, term.head)) : bars && line >= 0 ? formulaOf(lesson.told.stops[line])[0] : "";
-      found.push(node("button", { type: "button", class: `term c${colour.get(`${term.tail} ${term.head}`)}${bars ? "" : " out"}${[drawn, line].includes(lesson.at) ? " cur" : ""}`, onclick: () => goStop(line >= 0 && lesson.at < line ? line : drawn),
+      found.push(node("button", { type: "button", class: `term c${lesson.terms.get(`${term.tail} ${term.head}`).colour}${bars ? "" : " out"}${[drawn, line].includes(lesson.at) ? " cur" : ""}`, onclick: () => goStop(line >= 0 && lesson.at < line ? line : drawn),
         html: `${symbolMarkup(term.symbol)}<u class="${bars ? "on" : ""}"></u><u class="${bars > 1 ? "on" : ""}"></u><small>${below}</small>` }));
     });
   });
   if (one.head === "0") found.push(node("span", { class: "op" }, "= 0"));
   else {
-    const end = termStops({ tail: lesson.told.pole, head: one.end }).drawn;
-    found.unshift(node("span", { class: `term head${lesson.at >= end ? "" : " out"}`, html: `${symbolMarkup(one.head)}<u></u><u></u><small>${lesson.at >= end ? inMm(apart(lesson.told.pole, one.end)) : ""}</small>` }));
+    found.unshift(node("span", { class: `term head${seen >= one.drawn ? "" : " out"}`, html: `${symbolMarkup(one.head)}<u></u><u></u><small>${seen >= one.drawn ? inMm(apart(lesson.told.pole, one.end)) : ""}</small>` }));
     found[1].textContent = "=";
   }
   place.append(...found);
@@ -161,13 +127,18 @@ function besideOf(told, views) {
 
 function takeLesson(plan, at = -1) {
   const told = record.lessons.find((one) => one.plan === plan) ?? record.lessons[0], views = liveViews();
-  Object.assign(lesson, { told, at: clip(at, -1, told.stops.length - 1) });
+  const order = new Map(told.stops.map((stop, n) => [stop.kind === "line" ? "" : stop.step, n]).reverse()); // when each step is drawn
+  const terms = new Map(); // colour of a vector and of its term, and when it is drawn, by its ends
+  for (const { sides } of told.equations) sides.flat().forEach(({ tail, head, drawn }, n) => { if (!terms.has(`${tail} ${head}`)) terms.set(`${tail} ${head}`, { colour: n % 6 + 1, drawn }); });
+  Object.assign(lesson, { told, order, terms, at: clip(at, -1, told.stops.length - 1) });
   lesson.cards = [besideOf(told, views), views.find((view) => view.plan === told.plan)].map((view) => makeCard(view, (id) => {
     const n = told.stops.findIndex((stop) => stop.step === id && stop.kind !== "line");
     if (n >= 0) goStop(n);
   }));
   $("pair").replaceChildren(...lesson.cards.map((card) => card.figure), $("fly"), $("tag"));
-  lesson.steps = lesson.cards.map((card) => card.marks.map((mark) => card.live.sheet.marks.find((m) => m.id === mark.id)));
+  lesson.cards[0].caption.textContent = say("mechanism");
+  lesson.grip = makeGrip(lesson.cards[0]);
+  makeGuess(lesson.cards[1]);
   $("lessonScrub").max = told.stops.length;
   $("lessonPlan").value = told.plan;
 }
@@ -176,8 +147,9 @@ function takeLesson(plan, at = -1) {
 function fitLesson() {
   const rem = parseFloat(getComputedStyle(document.documentElement).fontSize), values = parts(machine.phi);
   for (const card of lesson.cards) {
-    const { clientWidth: wide, clientHeight: high } = card.svg, mm = rem * 0.3;
+    const { clientWidth: wide, clientHeight: high } = card.svg, mm = clip(high / 75, rem * 0.19, rem * 0.3);
     card.room = [Math.max(wide / mm - 30, 20), Math.max(high / mm - 24, 20)];
+    Object.assign(card, card === lesson.cards[1] && lesson.asks && lesson.mode === "guess" ? roomToGuess() : { shows: null, around: null });
     frameCard(card, [values]);
   }
 }
@@ -186,54 +158,42 @@ const placersNow = () => lesson.cards.map((card) => placer(parts(machine.phi), c
 
 function drawLesson(t = 1) {
   if ($("lesson").hidden || !lesson.told) return;
-  const values = parts(machine.phi), lost = notThere(values), order = new Map();
+  const values = parts(machine.phi), lost = notThere(values);
   $("lesson").classList.toggle("missing", Boolean(lost));
   if (lost) { drawMissing(lost, values); return; }
   fitLesson();
-  lesson.told.stops.forEach((stop, n) => { if (stop.kind !== "line" && !order.has(stop.step)) order.set(stop.step, n); });
-  const seen = t < 1 ? lesson.at - 1 : lesson.at, colour = colours(), named = new Map([...colour].map(([ends, n]) => [ends.split(" ").map((id) => stepOf(id).name).join("–"), n]));
+  const seen = seenNow(t), drawnAt = (id) => lesson.order.get(id) ?? -1;
   lesson.cards.forEach((card, side) => {
     drawCard(card, values);
-    card.svg.querySelector(".over").replaceChildren();
+    card.over.replaceChildren();
     if (!side) return;
     card.marks.forEach((mark, n) => {
-      const of = lesson.steps[side][n], when = order.get(of?.step) ?? -1, list = card.elements[n].classList;
+      const term = lesson.terms.get(mark.along.join(" ")), ends = mark.at.flatMap(([id, , , other]) => [drawnAt(id), drawnAt(other)]), list = card.elements[n].classList;
+      const when = term?.drawn ?? Math.max(drawnAt(card.sources[n]?.step), ...ends);
       list.toggle("undrawn", when > seen);
       list.toggle("cur", when === lesson.at);
       for (const name of [...list].filter((one) => /^c\d$/.test(one))) list.remove(name);
       const vector = mark.role === "vector" && mark.kind !== "text";
       list.toggle("shaft", vector && mark.kind === "line");
-      if (vector && named.has(of?.name)) list.add(`c${named.get(of.name)}`);
+      if (vector && term) list.add(`c${term.colour}`);
     });
   });
-  lesson.cards[0].caption.textContent = say("mechanism");
-  const unit = unitOf(planOf(lesson.told.plan).unit);
-  lesson.cards[1].caption.textContent = `${planOf(lesson.told.plan).title}, μ = ${digits(Number(lessonScale().toPrecision(3)))} ${/[/·]/.test(unit) ? `(${unit})` : unit}/${UNITS().mm}`;
+  lesson.cards[1].caption.textContent = `${planOf(lesson.told.plan).title}, ${scaleWords(lessonScale(), lesson.told.plan)}`;
   drawOver(t);
-  drawEquation();
+  drawEquation(lesson.asks ? seen : lesson.at);
+  lesson.grip(placersNow()[0]);
+  drawGuess();
 }
 
-const overOf = (side) => lesson.cards[side].svg.querySelector(".over");
-const stroke = (side, kind, points, closed = false) => overOf(side).append(svgNode("path", { class: kind, d: polyPath(points, 0, closed) }));
-
-function arrow(side, kind, a, b) {
-  const u = straight(sub(b, a));
-  stroke(side, kind, [a, b]);
-  if (Number.isFinite(u[0])) stroke(side, `${kind} solid`, [b, add(b, mul(u, [-3.4, 0.75])), add(b, mul(u, [-3.4, -0.75]))], true);
-}
+// The last stop of which everything is drawn.
+const seenNow = (t = 1) => (lesson.asks || t < 1 ? lesson.at - 1 : lesson.at);
 
 // Direction of a stop in the plan: of its line, or of its vector.
 function directionNow(stop, placed) {
   const mark = lesson.cards[1].marks[0];
   if (stop.kind === "line") return placed.direction({ ...mark, along: [stop.direction] });
-  const [a, b] = endsOf(stop).map((id) => placed.point(mark, id));
+  const [a, b] = stop.ends.map((id) => placed.point(mark, id));
   return straight(sub(b, a));
-}
-
-// The point of the mechanism that an end of a vector is the velocity, or acceleration, of.
-function pointOf(id) {
-  const name = stepOf(id).name, found = [name, name.replace(/\d+$/, "")].map((one) => `positions/${one[0].toUpperCase()}${one.slice(1)}`);
-  return found.find((one) => one in record.motion.all.results && stepOf(one).kind === "point");
 }
 
 // Where the direction of a stop is at the mechanism: two places, mm of its card; nothing where it comes from nowhere there.
@@ -251,30 +211,29 @@ function sourceOf(stop, [mechanism, plan]) {
 
 function turningArrow(centre, sense, kind) {
   const r = 8, from = sense > 0 ? -0.6 : Math.PI + 0.6, points = Array.from({ length: 17 }, (_, i) => add(centre, scale(r, cis(from + sense * i * 0.15))));
-  stroke(0, kind, points);
-  arrow(0, kind, points[15], points[16]);
+  stroke(lesson.cards[0], kind, points);
+  arrow(lesson.cards[0], kind, points[15], points[16]);
 }
 
 // What lies over the drawings: lines whose length is not known yet, the glowing link, the vector on its way, its formula.
 function drawOver(t) {
-  const placers = placersNow(), stop = stopNow(), colour = colours(), mark = lesson.cards[1].marks[0], place = (id) => placers[1].point(mark, id);
-  const seen = t < 1 ? lesson.at - 1 : lesson.at;
+  const placers = placersNow(), stop = stopNow(), mark = lesson.cards[1].marks[0], place = (id) => placers[1].point(mark, id);
+  const seen = seenNow(t);
   lesson.told.stops.forEach((line, n) => {
-    const meets = lesson.told.stops.findIndex((one) => one.kind === "meet" && one.step === line.step);
-    if (line.kind !== "line" || n > seen || lesson.at > meets) return;
-    const u = directionNow(line, placers[1]), a = place(line.tail), c = colour.get(`${line.tail} ${line.step}`) ?? colour.get(`${line.step} ${line.tail}`) ?? 0;
-    stroke(1, `direction c${c}`, [sub(a, scale(400, u)), add(a, scale(400, u))]);
+    if (line.kind !== "line" || n > seen || lesson.at > line.until) return;
+    const u = directionNow(line, placers[1]), a = place(line.tail), c = (lesson.terms.get(`${line.tail} ${line.step}`) ?? lesson.terms.get(`${line.step} ${line.tail}`))?.colour ?? 0;
+    stroke(lesson.cards[1], `direction c${c}`, [sub(a, scale(400, u)), add(a, scale(400, u))]);
   });
   $("fly").replaceChildren();
   $("tag").hidden = true;
-  if (!stop) return;
+  if (!stop || lesson.asks) return;
   const source = isNothing(stop) ? null : sourceOf(stop, placers);
-  if (source && stop.kind !== "rate") stroke(0, "glow", source);
+  if (source && stop.kind !== "rate") stroke(lesson.cards[0], "glow", source);
   if (stop.kind === "rate") {
     const sense = Math.sign(here(stop.step)), centre = placers[0].point(lesson.cards[0].marks[0], stop.along[0]);
-    if (source) stroke(0, "glow", source);
+    if (source) stroke(lesson.cards[0], "glow", source);
     if (sense && t === 1) turningArrow(centre, sense, "turning");
-    if (t === 1 && sense) { const b = source[1], u = scale(16 * sense, mul([0, 1], straight(sub(b, source[0])))); arrow(0, "turning", b, add(b, u)); }
+    if (t === 1 && sense) { const b = source[1], u = scale(16 * sense, mul([0, 1], straight(sub(b, source[0])))); arrow(lesson.cards[0], "turning", b, add(b, u)); }
   }
   if (t < 1 && source) fly(stop, source, placers[1], t);
   if (t === 1) tagAt(stop, placers[1]);
@@ -290,7 +249,7 @@ function onPage(side, [x, y]) {
 function fly(stop, source, plan, t) {
   const [a, b] = source.map((z) => onPage(0, z)), mark = lesson.cards[1].marks[0];
   const u = directionNow(stop, plan), tail = plan.point(mark, stop.tail);
-  const ends = stop.kind === "line" ? [sub(tail, scale(30, u)), add(tail, scale(30, u))] : endsOf(stop).map((id) => plan.point(mark, id));
+  const ends = stop.kind === "line" ? [sub(tail, scale(30, u)), add(tail, scale(30, u))] : stop.ends.map((id) => plan.point(mark, id));
   const [c, d] = ends.map((z) => onPage(1, z)), angle = (p, q) => Math.atan2(q[1] - p[1], q[0] - p[0]);
   const from = angle(a, b), whole = stop.kind === "line" ? Math.PI : 2 * Math.PI, by = mod(angle(c, d) - from + whole / 2, whole) - whole / 2;
   const ease = (x) => { const y = clip(x, 0, 1); return y * y * (3 - 2 * y); }, turnedBy = ease((t - 0.2) / 0.3), slid = ease((t - 0.5) / 0.45);
@@ -308,18 +267,16 @@ function tagAt(stop, plan) {
   if (tag.hidden) return;
   tag.innerHTML = lines.map((line) => `<span>${line}</span>`).join("");
   const box = $("fly").getBoundingClientRect(), frame = lesson.cards[1].svg.getBoundingClientRect(), w = tag.offsetWidth, h = tag.offsetHeight;
-  const ids = [...new Set(lesson.told.stops.slice(0, lesson.at + 1).flatMap((one) => endsOf(one) ?? (one.kind === "meet" ? one.of.map((a) => [a, one.step]) : []).flat()))];
-  const dots = ids.map((id) => onPage(1, plan.point(mark, id)));
-  const lines2 = lesson.told.stops.slice(0, lesson.at + 1).flatMap((one) => (one.kind === "meet" ? one.of.map((a) => [a, one.step]) : [endsOf(one)].filter(Boolean))).filter((pair) => pair.every((id) => ids.includes(id)))
-    .map((pair) => pair.map((id) => onPage(1, plan.point(mark, id)))).filter((pair) => pair.flat().every(Number.isFinite));
-  const own = endsOf(stop) ?? [stop.tail ?? stop.of?.[0], stop.kind === "meet" ? stop.step : stop.tail], [a, b] = own.map((id) => onPage(1, plan.point(mark, id))), middle = scale(0.5, add(a, b));
+  const sides = lesson.told.stops.slice(0, lesson.at + 1).flatMap(measuredAt).map((pair) => pair.map((id) => onPage(1, plan.point(mark, id))))
+    .filter((pair) => pair.flat().every(Number.isFinite)), dots = sides.flat();
+  const own = stop.ends ?? [stop.tail ?? stop.of?.[0], stop.kind === "meet" ? stop.step : stop.tail], [a, b] = own.map((id) => onPage(1, plan.point(mark, id))), middle = scale(0.5, add(a, b));
   const x0 = frame.left - box.left + 6, y0 = frame.top - box.top + 6, x1 = frame.right - box.left - w - 6, y1 = frame.bottom - box.top - h - 6;
   let best = null;
   for (let i = 0; i < 24; i++) for (const r of [1, 1.6, 2.4, 3.4]) {
     const x = clip(middle[0] + r * (w / 2 + 14) * Math.cos(i * Math.PI / 12) - w / 2, x0, Math.max(x0, x1)), y = clip(middle[1] + r * (h / 2 + 22) * Math.sin(i * Math.PI / 12) - h / 2, y0, Math.max(y0, y1));
     const inside = ([px, py]) => px > x - 8 && px < x + w + 8 && py > y - 14 && py < y + h + 14;
     let cost = r + size(sub([x + w / 2, y + h / 2], middle)) / 150 + 6 * dots.filter(inside).length;
-    for (const [p, q] of lines2) for (let n = 0; n <= 20; n++) if (inside(step(p, n / 20, sub(q, p)))) cost += 1;
+    for (const [p, q] of sides) for (let n = 0; n <= 20; n++) if (inside(step(p, n / 20, sub(q, p)))) cost += 1;
     if (!best || cost < best.cost) best = { cost, x, y };
   }
   tag.style.transform = `translate(${best.x}px, ${best.y}px)`;
@@ -327,72 +284,72 @@ function tagAt(stop, plan) {
 
 // --- going on -------------------------------------------------------------------------------------------------------------
 
-function showStop(then = () => {}) {
-  cancelAnimationFrame(lesson.moving);
+function showStop(quick = false) {
+  const stop = stopNow(), drawn = stop && !lesson.asks && !quick && !still() && !isNothing(stop);
   tellLesson();
-  if (still() || !stopNow() || isNothing(stopNow())) { drawLesson(); then(); return; }
-  const start = performance.now(), frame = (now) => {
-    const t = clip((now - start) / 1500, 0, 1);
-    drawLesson(t);
-    if (t < 1) lesson.moving = requestAnimationFrame(frame); else then();
-  };
-  frame(start);
-}
-
-function goStop(n, quick = false) {
-  lesson.at = clip(n, -1, lesson.told.stops.length - 1);
-  if (quick) { cancelAnimationFrame(lesson.moving); tellLesson(); drawLesson(); } else showStop();
+  animate(lesson, drawn ? 1500 : 0, drawLesson);
   writeAddress();
 }
 
-function nextStop() {
-  if (lesson.at < lesson.told.stops.length - 1) goStop(lesson.at + 1);
+// Another stop, drawn before one's eyes, at once if `quick`; what the mode asks for is asked first.
+function goStop(n, quick = false, asks = !quick) {
+  lesson.at = clip(n, -1, lesson.told.stops.length - 1);
+  lesson.asks = asks && lesson.mode !== "show" && stopNow()?.kind in ASKED;
+  forgetGuess();
+  showStop(quick);
 }
 
+function nextStop() {
+  if (lesson.asks) giveUp(); else if (lesson.at < lesson.told.stops.length - 1) goStop(lesson.at + 1);
+}
+
+// "lecture" or "guess", or out of it again.
 function lessonMode(mode) {
-  lesson.mode = lesson.mode === mode ? "show" : mode;
+  const was = lesson.mode;
+  lesson.mode = was === mode ? "show" : mode;
+  for (const one of ["lecture", "guess"]) $(one).setAttribute("aria-pressed", String(lesson.mode === one));
   document.body.classList.toggle("lecture", lesson.mode === "lecture");
-  $("lecturing").setAttribute("aria-pressed", String(lesson.mode === "lecture"));
   if (lesson.mode === "lecture") document.documentElement.requestFullscreen?.().catch(() => {}); else if (document.fullscreenElement) document.exitFullscreen();
-  goStop(lesson.at, true);
+  goStop(lesson.mode === "guess" ? Math.max(lesson.at, 0) : lesson.at, true, lesson.mode === "guess");
 }
 
 function lessonBar() {
-  const button = (id, text, key, act, more = {}) => node("button", { type: "button", id, "aria-label": say(key), title: say(key), onclick: act, ...more }, text);
-  const range = (id, key, more, act) => node("input", { type: "range", id, class: "scrub", "aria-label": say(key), ...more, oninput: act });
-  const period = record.motion.period * 180 / Math.PI;
+  const mode = (name) => node("button", { type: "button", id: name, "aria-pressed": String(lesson.mode === name), onclick: () => lessonMode(name) }, say(name));
   return [
-    button("lessonBack", "‹", "step back", () => goStop(lesson.at - 1, true)),
-    range("lessonScrub", "steps", { min: 0, value: 0 }, () => goStop(Number($("lessonScrub").value) - 1, true)),
-    button("lessonNext", "›", "step", nextStop), button("lessonAgain", "↻", "play", () => showStop(), { class: "wide" }),
-    node("output", { class: "count", id: "lessonPhi" }),
-    range("lessonTurn", "crank angle", { min: 0, max: period, step: 0.1, value: angleTurned() * 180 / Math.PI }, () => turnTo(Number($("lessonTurn").value) * Math.PI / 180)),
+    control("lessonBack", "‹", "step back", () => goStop(lesson.at - 1, true)), range("lessonScrub", "steps", { min: 0, value: 0 }, (at) => goStop(at - 1, true)),
+    control("lessonNext", "›", "step", nextStop), control("", "↻", "play", () => showStop(), { class: "wide" }), node("output", { class: "count angle" }), angleSlider(),
     node("select", { id: "lessonPlan", "aria-label": say("which plan"), onchange: (event) => { takeLesson(event.target.value); goStop(-1, true); } },
       ...record.lessons.map((one) => node("option", { value: one.plan }, planOf(one.plan).title))),
-    button("lecturing", say("lecture"), "lecture", () => lessonMode("lecture"), { "aria-pressed": "false" }),
-    button("link", say("copy link"), "copy link", copyLink, { class: "wide" }),
+    mode("guess"), mode("lecture"), node("button", { type: "button", id: "link", class: "wide", onclick: copyLink }, say("copy link")),
   ];
 }
 
 function lessonTurned() {
-  cancelAnimationFrame(lesson.moving);
-  tellLesson();
-  drawLesson();
-  $("lessonTurn").value = angleTurned() * 180 / Math.PI;
-  writeAddress();
+  forgetGuess();
+  showStop(true);
 }
 
-const lessonKeys = () => ({ " ": nextStop, ArrowRight: nextStop, PageDown: nextStop, ArrowLeft: () => goStop(lesson.at - 1, true), PageUp: () => goStop(lesson.at - 1, true),
-  Home: () => goStop(-1, true), End: () => goStop(Infinity, true), f: () => lessonMode("lecture"), а: () => lessonMode("lecture"),
-  r: () => showStop(), к: () => showStop(), b: () => document.body.classList.toggle("dark"), и: () => document.body.classList.toggle("dark"), Escape: () => { if (lesson.mode !== "show") lessonMode(lesson.mode); } });
+function lessonKeys() {
+  const back = () => goStop(lesson.at - 1, true), lecture = () => lessonMode("lecture"), guesses = () => lessonMode("guess"), dark = () => document.body.classList.toggle("dark");
+  return { " ": nextStop, ArrowRight: nextStop, PageDown: nextStop, ArrowLeft: back, PageUp: back, Home: () => goStop(-1, true), End: () => goStop(Infinity, true),
+    f: lecture, а: lecture, g: guesses, п: guesses, r: () => showStop(), к: () => showStop(), b: dark, и: dark, Enter: () => lesson.asks && checkGuess(),
+    Escape: () => { if (lesson.mode !== "show") lessonMode(lesson.mode); } };
+}
+
+// The lesson on paper: a step a line, its picture beside.
+function handOut() {
+  const { at, asks } = lesson;
+  const lines = lesson.told.stops.map((stop, n) => {
+    goStop(n, true);
+    const [equation, told] = ["equation", "told"].map((id) => node("div", { class: id, html: $(id).innerHTML }));
+    return node("article", {}, lesson.cards[1].svg.cloneNode(true), node("div", {}, equation, told, node("p", { class: "formula", html: formulaOf(stop).join(" ") })));
+  });
+  $("handout").replaceChildren(node("h1", {}, `${planOf(lesson.told.plan).title}, ${momentOf(machine.phi)}`), lesson.cards[0].svg.cloneNode(true), ...lines);
+  goStop(at, true, asks);
+}
 
 function openLesson(plan, at = -1) {
   if (lesson.told?.plan !== plan || !lesson.cards.length) takeLesson(plan, at); else lesson.at = at;
-  if (!lesson.watched) {
-    lesson.watched = true;
-    new ResizeObserver(() => { if (!$("lesson").hidden) drawLesson(); }).observe($("pair"));
-    document.addEventListener("fullscreenchange", () => { if (!document.fullscreenElement && lesson.mode === "lecture") lessonMode("lecture"); });
-  }
   goStop(lesson.at, true);
 }
 
@@ -402,23 +359,23 @@ function openLesson(plan, at = -1) {
 function drawMissing([id], values) {
   $("fly").replaceChildren();
   $("tag").hidden = true;
-  const s = stepOf(id), gap = gapOf(id, values), given = (arg) => (arg.step !== undefined ? taken(record.motion.all.results[arg.step] ?? [0, 1], values) : machine.given[arg.name] ?? arg.given);
-  $("told").innerHTML = `<h2 class="bad">${plain(say("does not assemble at this angle"))}: ${indexed(s.name)}${gap ? `, ${plain(say("gap"))} ${told(gap, "m")}` : ""}</h2>`;
+  $("told").innerHTML = `<h2 class="bad">${lostWords([id], values)}</h2>`;
   fitLesson();
-  const card = lesson.cards[0], placed = placer(values, card.shrunk), mark = card.marks[0], over = overOf(0);
+  const [card] = lesson.cards, placed = placer(values, card.shrunk), mark = card.marks[0], s = stepOf(id), rounds = s.rule.startsWith("arc cuts arc");
   drawCard(card, values);
-  over.replaceChildren();
-  if (!/^arc cuts/.test(s.rule)) return;
-  const args = s.args.map(given), mm = (x) => x / mark.mu[0] / card.shrunk, where = (n) => placed.point(mark, s.args[n].step);
-  const [c1, c2] = [where(0), where(2)], r1 = mm(args[1]), u = s.rule.startsWith("arc cuts arc") ? straight(sub(c2, c1)) : mul([0, Math.sign(plainCross(args[3], sub(args[2], args[0]))) || 1], straight(args[3]));
-  const towards = Math.atan2(u[1], u[0]), arc = (c, r, t) => over.append(svgNode("path", { class: "missing", d: arcPath([c[0], -c[1]], r, t - 0.7, t + 0.7) }));
-  arc(c1, r1, towards);
-  const near = add(c1, scale(r1, u));
-  let other = add(near, scale(mm(gap), u));
-  if (s.rule.startsWith("arc cuts arc")) {
-    const r2 = mm(args[3]), d = size(sub(c2, c1)), inside = d < Math.abs(r1 - r2), back = inside && r1 < r2 ? towards : towards + Math.PI;
-    arc(c2, r2, inside && r1 > r2 ? towards : back);
-    other = add(c2, scale(r2, cis(inside && r1 > r2 ? towards : back)));
-  } else stroke(0, "missing", [sub(other, scale(40, mul([0, 1], u))), add(other, scale(40, mul([0, 1], u)))]);
-  stroke(0, "gap", [near, other]);
+  card.over.replaceChildren();
+  lesson.grip(placed);
+  if (!rounds && !s.rule.startsWith("arc cuts line")) return;
+  const args = argumentsNow(id, values), mm = (x) => x / mark.mu[0] / card.shrunk, [centre, other] = [0, 2].map((n) => placed.point(mark, s.args[n].step));
+  const [radius, second, gap] = [args[1], args[3], gapOf(id, values)].map((x) => (Array.isArray(x) ? x : mm(x)));
+  // From the centre of the first arc to where the other one, or the line, is nearest to it.
+  const inside = rounds && size(sub(other, centre)) < Math.abs(radius - second), foot = mul([0, Math.sign(plainCross(args[3], sub(args[2], args[0]))) || 1], args[3]);
+  const way = scale(inside && radius < second ? -1 : 1, straight(rounds ? sub(other, centre) : foot));
+  const near = step(centre, radius, way), there = step(near, inside && radius > second ? -gap : gap, way);
+  const arc = ([x, y], r, [u, v]) => card.over.append(svgNode("path", { class: "missing", d: arcPath([x, -y], r, Math.atan2(v, u) - 0.7, Math.atan2(v, u) + 0.7) }));
+  arc(centre, radius, way);
+  if (rounds) arc(other, second, sub(there, other)); else stroke(card, "missing", [step(there, 40, across(way)), step(there, -40, across(way))]);
+  stroke(card, "gap", [near, there]);
+  const { x, y, width, height } = card.svg.viewBox.baseVal, [x0, y0, x1, y1] = extentOf([[x, -y], [x + width, -y - height], ...[near, there].flatMap((z) => [sub(z, [9, 9]), add(z, [9, 9])])]);
+  card.svg.setAttribute("viewBox", `${x0} ${-y1} ${x1 - x0} ${y1 - y0}`);
 }

@@ -35,12 +35,11 @@ function run({ program, inputs, constants }, phi, { given, start, courses, loads
   }), constants, PRIMITIVES);
 }
 
-// Diagram of a load whose table is multiplied; made once for a factor.
+// Diagram of a load whose table is multiplied: the given one, stretched and moved; made once for a factor.
 function curveOf(input, factor) {
   if (input.factor !== factor) {
-    const [bore, ambient] = input.piston ?? [], area = Math.PI * bore ** 2 / 4;
-    const y = input.y.map((one) => (input.piston ? area * (factor * one - ambient) : (input.sign ?? 1) * factor * one));
-    Object.assign(input, { factor, curve: loadDiagram(input.x, y, input.smooth, input.turns) });
+    const [y, left, right] = ["y", "left", "right"].map((name) => input.drawn[name].map((one) => input.times * factor * one + (name === "y" ? input.plus : 0)));
+    Object.assign(input, { factor, curve: { ...input.drawn, y, left, right } });
   }
   return input.curve;
 }

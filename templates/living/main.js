@@ -1,40 +1,41 @@
 // The page: its tabs, its keys, and what tests ask.
 
+function selectTab(name) {
+  for (const one of $("tabs").children) one.setAttribute("aria-selected", String(one.dataset.tab === String(name)));
+  $("tabs").querySelector("[aria-selected=true]").scrollIntoView({ inline: "nearest", block: "nearest" });
+}
+
 function openSheet(number, quick = false) {
   const sheet = record.sheets.find((s) => s.sheet === number) ?? record.sheets[0];
   drawSheet(sheet);
-  for (const button of $("tabs").querySelectorAll("[data-sheet]")) button.setAttribute("aria-selected", String(Number(button.dataset.sheet) === sheet.sheet && !$("paper").hidden));
+  selectTab(sheet.sheet);
   listFilms();
   takeFilm();
   fit(quick);
 }
 
-// A tab: a sheet by its number, "turn", or the "lesson" of a plan from one of its stops on.
+// What each tab has of its own: its bar, who follows the crank, what is done to open and to print it. In motion the seen angle comes
+// first, the whole turn with its scales and paths when the hand rests.
+const TABS = {
+  draw: { place: "paper", bar: playerBar, follows: drawPointers, print: () => fit(true), open: (sheet) => { openSheet(sheet ?? leaf.sheet.sheet, true); unask(); showPlaying(); } },
+  turn: { place: "stage", bar: stageBar, print: () => stage.cards.forEach((card) => drawCard(card, parts(machine.phi))),
+    follows: (changed) => { if (changed) { clearTimeout(stage.rests); stage.rests = setTimeout(openStage, REST_MS); } drawStage(); writeAddress(); },
+    open: () => { $("panel").replaceChildren(...changePanel()); showEdits(); openStage(); } },
+  lesson: { place: "lesson", bar: lessonBar, follows: lessonTurned, print: handOut, open: (plan, at) => openLesson(plan, at) },
+};
+
+// A tab: "draw" with the number of a sheet, "turn", or the "lesson" of a plan from one of its stops on.
 function openTab(name, which, at) {
-  const moves = name === "turn", teaches = name === "lesson", sheet = teaches ? undefined : which;
   pause();
   spin(false);
-  $("paper").hidden = moves || teaches;
-  $("stage").hidden = !moves;
-  $("lesson").hidden = !teaches;
-  $("panel").hidden = teaches;
-  document.body.classList.toggle("teaching", teaches);
-  for (const button of $("tabs").children) button.setAttribute("aria-selected", String(name !== "draw" ? button.dataset.tab === name : Number(button.dataset.sheet) === (sheet ?? leaf.sheet.sheet)));
-  $("bar").replaceChildren(...(teaches ? lessonBar() : moves ? stageBar() : playerBar()));
-  if (teaches) {
-    machine.watchers = [lessonTurned];
-    openLesson(which, at);
-  } else if (moves) {
-    machine.watchers = [(name2) => { if (name2 && !$("stage").hidden) takeTurn(); drawStage(); writeAddress(); }];
-    $("panel").replaceChildren(...changePanel());
-    showEdits();
-    openStage();
-  } else {
-    machine.watchers = [drawPointers];
-    openSheet(sheet ?? leaf.sheet.sheet, true);
-    unask();
-    showPlaying();
-  }
+  for (const one of Object.values(TABS)) $(one.place).hidden = one !== TABS[name];
+  $("panel").hidden = name === "lesson";
+  document.body.classList.toggle("teaching", name === "lesson");
+  $("bar").replaceChildren(...TABS[name].bar());
+  machine.watchers = [showAngle, TABS[name].follows];
+  if (name !== "draw") selectTab(name);
+  TABS[name].open(which, at);
+  showAngle();
   writeAddress(true);
 }
 
@@ -48,16 +49,12 @@ function onKey(event) {
     ? { " ": () => spin(!stage.playing), ArrowRight: () => turn(machine.phi + record.motion.sense * degree), ArrowLeft: () => turn(machine.phi - record.motion.sense * degree),
       Home: () => turn(record.motion.start) }
     : { " ": () => (film.playing ? pause() : play()), ArrowRight: () => stepTo(film.at + 1), ArrowLeft: () => stepTo(film.at - 1, true),
-      Home: () => stepTo(-1, true), End: () => stepTo(film.stops.length - 1, true), "+": () => zoom(0.75), "=": () => zoom(0.75), "-": () => zoom(1 / 0.75),
+      Home: () => stepTo(-1, true), End: () => stepTo(film.stops.length - 1, true), "+": () => leaf.zoom.by(4 / 3), "=": () => leaf.zoom.by(4 / 3), "-": () => leaf.zoom.by(0.75),
       0: () => fit(), Escape: () => unask() };
-  acts["?"] = () => alertKeys();
-  if (event.target.matches("button") && event.key === " ") return;
+  acts["?"] = () => $("panel").replaceChildren(node("h2", {}, say("keys")), node("p", { class: "hint", style: "white-space: pre-line" }, say("list of keys")));
+  if (event.target.matches("button") && [" ", "Enter"].includes(event.key)) return;
   if (event.target.matches("input[type=range]") && event.key.startsWith("Arrow")) return;
   if (acts[event.key]) { event.preventDefault(); acts[event.key](); }
-}
-
-function alertKeys() {
-  $("panel").replaceChildren(node("h2", {}, say("keys")), node("p", { class: "hint", style: "white-space: pre-line" }, say("list of keys")));
 }
 
 async function start() {
@@ -67,34 +64,28 @@ async function start() {
   for (const sheet of record.sheets) sheet.plans = new Set(sheet.frames.map((f) => f.plan));
   startMachine();
   const tab = (attributes, text, act) => node("button", { type: "button", role: "tab", ...attributes, onclick: act }, text);
-  $("tabs").append(...record.sheets.map((s) => tab({ "data-sheet": s.sheet }, say("sheet {n}", { n: s.sheet }), () => openTab("draw", s.sheet))));
+  $("tabs").append(...record.sheets.map((s) => tab({ "data-tab": s.sheet }, say("sheet {n}", { n: s.sheet }), () => openTab("draw", s.sheet))));
   if (record.motion && record.sheets.some((s) => s.live?.length)) $("tabs").append(tab({ "data-tab": "turn" }, say("in motion"), () => openTab("turn")));
   if (record.lessons?.length) $("tabs").append(tab({ "data-tab": "lesson" }, say("lesson"), () => openTab("lesson", lesson.told?.plan ?? (record.lessons[1] ?? record.lessons[0]).plan, lesson.at)));
-  makeTurner();
-  watchViewport(clicked);
+  $("turner").append(spinner("⟳", "turn the crank on the sheet"), angleSlider());
+  leaf.zoom = zoomable($("sheet"), ({ x, y, w, h }) => $("sheet").setAttribute("viewBox", `${x} ${y} ${w} ${h}`), clicked);
+  $("zoom").append(...leaf.zoom.tools);
   setTimeout(watchFind);
-  if (record.motion) machine.phi = phiOf(record.sheets.flatMap((s) => s.live ?? []).find((v) => v.plan === "positions"));
+  const shown = record.sheets.flatMap((s) => s.live ?? []).find((one) => one.plan === "positions"), plan = planOf("positions");
+  machine.phi = plan?.phi?.[plan.positions.indexOf(shown?.position)] ?? record.motion?.start ?? 0;
   const opens = record.opens && record.sheets.find((s) => s.plans.has(record.opens));
   leaf.sheet = opens || record.sheets[0];
   const told = location.hash.length > 1;
   if (!told || !readAddress()) openTab("draw", leaf.sheet.sheet);
-  watchAddress();
-  if (opens && !told) {
-    const view2 = opens.frames.find((f) => f.plan === record.opens).view;
-    takeFilm(view2);
-    $("what").value = view2;
-    fitBox(boundsOf(opens.marks.filter((m) => m.view === view2)));
-  }
+  addEventListener("hashchange", () => { if (location.hash !== address.written) readAddress(); });
+  if (opens && !told) openView(opens.frames.find((f) => f.plan === record.opens).view);
   document.addEventListener("keydown", onKey);
+  new ResizeObserver(() => drawLesson()).observe($("pair"));
+  addEventListener("beforeprint", () => Object.values(TABS).find((one) => !$(one.place).hidden).print());
+  document.addEventListener("fullscreenchange", () => { if (!document.fullscreenElement && lesson.mode === "lecture") lessonMode("lecture"); });
   window.tmm = { at: valuesAt, set: setGiven, record, ready: true,
     film: () => film.stops.length, step: (n) => drawStop(n, true), views: () => stage.cards.length, open: openTab, turn, ask };
   document.documentElement.dataset.ready = "";
-}
-
-// World angle of the position that a view is drawn for.
-function phiOf(live) {
-  const plan = live && planOf(live.plan), k = plan ? plan.positions.indexOf(live.position) : -1;
-  return plan?.phi?.[k] ?? record.motion.start;
 }
 
 start();

@@ -1,6 +1,6 @@
 // Markers that run along the diagrams of a sheet with the crank, or with the cam.
 
-const pointers = { all: [], dots: [], legs: [] };
+const pointers = { all: [] };
 
 const senseOfTurn = () => record.motion?.sense ?? 1;
 const wholeTurn = () => record.motion?.period ?? 2 * Math.PI;
@@ -20,13 +20,7 @@ function takeMarkers(sheet) {
 
 function drawMarkers(sheet) {
   takeMarkers(sheet);
-  const group = svgNode("g", { id: "pointers" });
-  $("sheet").append(group);
-  [pointers.legs, pointers.dots] = ["line", "circle"].map((kind) => pointers.all.map((marker) => {
-    const element = svgNode(kind, { class: kind === "line" ? "pointer" : "pointer dot", r: 1.4, visibility: "hidden" });
-    if (kind === "circle" || !marker.passes) group.append(element);
-    return element;
-  }));
+  $("sheet").insertAdjacentHTML("beforeend", `<g id="pointers">${'<g><line class="pointer"/><circle class="pointer dot" r="1.4"/></g>'.repeat(pointers.all.length)}</g>`);
   $("turner").hidden = !pointers.all.length;
   drawPointers();
 }
@@ -43,25 +37,24 @@ function placeOnCurve({ points, at, passes }, angle) {
 function drawPointers() {
   const turned = angleTurned();
   pointers.all.forEach((marker, n) => {
-    const angle = marker.of === "cam" ? mod(turned, 2 * Math.PI) : turned, z = placeOnCurve(marker, angle);
-    for (const element of [pointers.dots[n], pointers.legs[n]]) element.setAttribute("visibility", z ? "visible" : "hidden");
+    const angle = marker.of === "cam" ? mod(turned, 2 * Math.PI) : turned, z = placeOnCurve(marker, angle), element = $("pointers").children[n], [leg, dot] = element.children;
+    element.toggleAttribute("hidden", !z);
     if (!z) return;
-    pointers.dots[n].setAttribute("cx", fixed(z[0]));
-    pointers.dots[n].setAttribute("cy", fixed(leaf.height - z[1]));
-    if (marker.passes) return;
-    const foot = add(marker.from, mul([angle / marker.mu, marker.base], marker.along));
-    for (const [key, value] of [["x1", foot[0]], ["y1", leaf.height - foot[1]], ["x2", z[0]], ["y2", leaf.height - z[1]]]) {
-      pointers.legs[n].setAttribute(key, fixed(value));
-    }
+    const [x, y] = [fixed(z[0]), fixed(leaf.height - z[1])], foot = marker.passes ? z : add(marker.from, mul([angle / marker.mu, marker.base], marker.along));
+    setAll(dot, { cx: x, cy: y });
+    setAll(leg, { x1: fixed(foot[0]), y1: fixed(leaf.height - foot[1]), x2: x, y2: y });
   });
-  if (!$("turned")) return;
-  $("turned").value = turned * 180 / Math.PI;
-  $("turned").setAttribute("aria-valuetext", `${Math.round(turned * 180 / Math.PI)}°`);
 }
 
-function makeTurner() {
-  const slider = node("input", { type: "range", id: "turned", min: 0, max: wholeTurn() * 180 / Math.PI, step: 0.1, "aria-label": say("crank angle"),
-    oninput: (event) => { spin(false); turnTo(Number(event.target.value) * Math.PI / 180); } });
-  $("turner").append(node("button", { type: "button", class: "play spin", "aria-label": say("turn the crank on the sheet"), title: say("turn the crank on the sheet"),
-    onclick: () => spin(!stage.playing) }, "⟳"), slider);
+// Sliders of the crank angle, and where it is told beside them.
+const angleSlider = () => range("", "crank angle", { class: "scrub angle", min: 0, max: wholeTurn() * 180 / Math.PI, step: 0.1 }, (degrees) => { spin(false); turnTo(degrees * Math.PI / 180); });
+
+function showAngle() {
+  for (const one of document.querySelectorAll(".angle")) {
+    if (one.matches("output")) { one.textContent = momentOf(machine.phi); continue; }
+    one.value = angleTurned() * 180 / Math.PI;
+    one.setAttribute("aria-valuetext", `${Math.round(one.value)}°`);
+  }
 }
+
+const spinner = (sign, key) => control("", sign, key, () => spin(!stage.playing), { class: "play spin", "data-sign": sign, "data-key": key });

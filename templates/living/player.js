@@ -2,44 +2,43 @@
 
 const film = { stops: [], at: -1, view: "", playing: false, speed: 1, first: new Map() };
 
-// Stops of a sheet: for each frame, in the order of construction, the steps that leave a line.
+// Stops of a sheet: the steps that leave a line in its frames, plan by plan and position by position, each behind what it is made of.
 function stopsOf(sheet) {
-  const order = new Map(record.plans.map((plan, n) => [plan.id, n])), stops = [];
-  const steps = new Map(Object.keys(record.steps).map((id, n) => [id, n]));
-  // A group is drawn with its forces: when they are there.
-  const drawnAt = (f) => Math.max(order.get(f.plan) ?? 1e6, ...(f.position ? sheet.marks.filter((m) => m.frame === f.id && m.role === "vector" && m.step)
-    .map((m) => order.get(stepOf(m.step).plan) - 0.5) : []));
-  const places = new Map(sheet.frames.map((f) => [f, [drawnAt(f), planOf(f.plan)?.positions.indexOf(f.position) ?? 0, f.id]]));
-  const place = (f) => places.get(f);
-  const frames = sheet.frames.filter((f) => planOf(f.plan)).sort((a, b) => { const p = place(a), q = place(b); return p[0] - q[0] || p[1] - q[1] || p[2] - q[2]; });
-  for (const frame of frames) {
-    const plan = planOf(frame.plan), own = sheet.marks.map((m, n) => [m, n]).filter(([m]) => m.frame === frame.id && m.step);
+  if (sheet.stops) return sheet.stops;
+  const order = new Map(record.plans.map((plan, n) => [plan.id, n])), made = new Map(), seen = new Set(), stops = [];
+  for (const id of Object.keys(record.steps)) for (const one of chain(id, seen)) made.set(one, made.size);
+  for (const frame of sheet.frames.filter((f) => planOf(f.plan))) {
+    // A line between two points is drawn when the later of them is there.
+    const ends = (m) => [m.step, ...(m.name ?? "").split("–").map((one) => `${frame.plan}/${one}`)].filter((id) => made.has(id));
+    const plan = planOf(frame.plan), own = sheet.marks.flatMap((m, n) => (m.frame === frame.id && m.step ? [{ m, n, id: ends(m).reduce((a, b) => (made.get(b) > made.get(a) ? b : a)) }] : []));
     const label = frame.position || sheet.live?.find((l) => l.view === frame.view)?.position || (plan.positions[0] ?? "");
-    const ids = [...new Set([...plan.steps.filter((id) => stepOf(id).helpers), ...own.map(([m]) => m.step)])];
-    for (const id of ids.sort((a, b) => steps.get(a) - steps.get(b))) {
-      const marks = own.filter(([m]) => m.step === id).map(([, n]) => n);
-      const drawn = marks.some((n) => !sheet.marks[n].geometry.text);
-      const helpers = at(stepOf(id).helpers, label) ?? [];
-      if (drawn || (marks.length && helpers.length)) stops.push({ frame, label, id, marks, helpers });
+    // A group is drawn when the first of its forces is.
+    const forces = own.filter(({ m }) => frame.position && m.role === "vector").map(({ m }) => order.get(stepOf(m.step).plan) - 0.5);
+    for (const id of new Set([...plan.steps.filter((one) => stepOf(one).helpers), ...own.map((one) => one.id)])) {
+      const marks = own.filter((one) => one.id === id).map(({ n }) => n), helpers = at(stepOf(id).helpers, label) ?? [];
+      const latest = Math.max(order.get(frame.plan), ...chain(id).map((one) => order.get(stepOf(one).plan)), forces.length ? Math.min(...forces) : 0);
+      const place = [latest, plan.positions.indexOf(frame.plan === stepOf(id).plan ? frame.position : label), made.get(id), frame.id];
+      if (marks.some((n) => !sheet.marks[n].geometry.text) || (marks.length && helpers.length)) stops.push({ frame, label, id, marks, helpers, place });
     }
   }
-  return stops;
+  return (sheet.stops = stops.sort((a, b) => { const n = a.place.findIndex((x, k) => x !== b.place[k]); return n < 0 ? 0 : a.place[n] - b.place[n]; }));
 }
 
+// A view is played with what its plans give elsewhere: how a link turns, by an arrow at the mechanism.
 function takeFilm(view = "") {
   pause();
+  const shown = leaf.sheet.frames.filter((frame) => frame.view === view), gives = (stop) => shown.some((frame) => frame.plan === stepOf(stop.id).plan && (frame.position || stop.label) === stop.label);
   film.view = view;
-  film.stops = stopsOf(leaf.sheet).filter((stop) => !view || stop.frame.view === view);
+  film.stops = stopsOf(leaf.sheet).filter((stop) => !view || stop.frame.view === view || gives(stop));
+  film.frames = new Set(film.stops.map((stop) => stop.frame.id));
   film.at = -1;
   film.first = new Map();
   film.stops.forEach((stop, n) => stop.marks.forEach((mark) => { if (!film.first.has(mark)) film.first.set(mark, n); }));
-  const scrub = $("scrub");
-  scrub.max = film.stops.length;
-  scrub.value = 0;
   countStops();
 }
 
 function countStops() {
+  Object.assign($("scrub"), { max: film.stops.length, value: film.at + 1 });
   $("count").textContent = `${film.at + 1} / ${film.stops.length}`;
   $("scrub").setAttribute("aria-valuetext", `${film.at + 1} / ${film.stops.length}`);
 }
@@ -64,21 +63,21 @@ function strokeOf(helper, frame) {
   return Number.isFinite(t) ? { d: arcPath(a, r, t - wide, t + wide), centre: a } : null;
 }
 
+const setAll = (element, attributes) => { for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value); };
+
 function svgNode(name, attributes) {
   const found = document.createElementNS("http://www.w3.org/2000/svg", name);
-  for (const [key, value] of Object.entries(attributes)) found.setAttribute(key, value);
+  setAll(found, attributes);
   return found;
 }
 
 function reveal(n) {
   const now = film.stops[n], args = new Set(now ? stepOf(now.id).args.map((a) => a.step) : []);
-  leaf.sheet.marks.forEach((mark, i) => {
-    const list = leaf.elements[i].classList, first = film.first.get(i);
-    list.remove("now", "kin", "after", "other", "past", "later");
-    if (first === undefined) list.add(film.view && mark.view !== film.view ? "later" : "past");
-    else if (first > n) list.add("later");
-    else if (first === n) { if (!mark.position || mark.position === now.label) list.add("now"); }
-    else if (now && args.has(mark.step) && mark.frame === now.frame.id && (!mark.position || mark.position === now.label)) list.add("kin");
+  paint((mark, i) => {
+    const first = film.first.get(i), here = now && (!mark.position || mark.position === now.label);
+    if (first === undefined) return film.view && !film.frames.has(mark.frame) ? "later" : "past";
+    if (first >= n) return first > n ? "later" : here && "now";
+    return here && args.has(mark.step) && mark.frame === now.frame.id && "kin";
   });
   $("sheet").classList.remove("asked");
   $("sheet").classList.add("film");
@@ -88,7 +87,6 @@ function reveal(n) {
 function drawStop(n, quick = still()) {
   const was = film.stops[film.at], stop = film.stops[n], hand = $("hand");
   film.at = n;
-  $("scrub").value = n + 1;
   countStops();
   hand.replaceChildren();
   if (!stop) { dim(); reveal(-1); invite(); return Promise.resolve(); }
@@ -151,24 +149,23 @@ function stepTo(n, quick = false) {
 }
 
 // Views of the sheet, each to be looked at and played by itself.
-function viewList() {
-  const names = [...new Set(stopsOf(leaf.sheet).map((stop) => stop.frame.view))];
-  return node("div", {}, node("h3", {}, say("views of this sheet")), node("div", { class: "chips" }, ...names.map((name) => node("button", {
-    type: "button", class: "chip", onclick: () => { takeFilm(name); $("what").value = name; fitBox(boundsOf(leaf.sheet.marks.filter((m) => m.view === name))); play(); } }, calledView(name)))));
+const viewsOf = (sheet) => [...new Set(stopsOf(sheet).map((stop) => stop.frame.view))];
+
+function openView(name) {
+  takeFilm(name);
+  $("what").value = name;
+  fitBox(boundsOf(leaf.sheet.marks.filter((m) => m.view === name)));
 }
+
+const viewList = () => node("div", {}, node("h3", {}, say("views of this sheet")), node("div", { class: "chips" },
+  ...viewsOf(leaf.sheet).map((name) => button(calledView(name), () => { openView(name); play(); }, { class: "chip" }))));
 
 function playerBar() {
-  const back = node("button", { type: "button", "aria-label": say("step back"), title: say("step back"), onclick: () => stepTo(film.at - 1, true) }, "‹");
-  const next = node("button", { type: "button", "aria-label": say("step"), title: say("step"), onclick: () => stepTo(film.at + 1) }, "›");
-  const start = node("button", { type: "button", id: "play", class: "play", onclick: () => (film.playing ? pause() : play()) }, "▶");
-  const scrub = node("input", { type: "range", id: "scrub", class: "scrub", min: 0, value: 0, "aria-label": say("steps"), oninput: () => stepTo(Number($("scrub").value) - 1, true) });
-  const speed = node("select", { "aria-label": say("speed"), onchange: (event) => { film.speed = Number(event.target.value); } },
-    ...[0.5, 1, 2, 4].map((s) => node("option", { value: s, selected: s === 1 }, `×${String(s).replace(".", decimal())}`)));
-  const what = node("select", { id: "what", "aria-label": say("what is played"), onchange: (event) => { takeFilm(event.target.value); drawStop(-1); fit(); } });
-  return [back, start, next, scrub, node("span", { class: "count", id: "count" }), what, speed];
+  return [control("", "‹", "step back", () => stepTo(film.at - 1, true)), control("play", "▶", "play", () => (film.playing ? pause() : play()), { class: "play" }),
+    control("", "›", "step", () => stepTo(film.at + 1)), range("scrub", "steps", { min: 0, value: 0 }, (at) => stepTo(at - 1, true)), node("span", { class: "count", id: "count" }),
+    node("select", { id: "what", "aria-label": say("what is played"), onchange: (event) => { takeFilm(event.target.value); drawStop(-1); fit(); } }),
+    node("select", { "aria-label": say("speed"), onchange: (event) => { film.speed = Number(event.target.value); } },
+      ...[0.5, 1, 2, 4].map((s) => node("option", { value: s, selected: s === 1 }, `×${String(s).replace(".", decimal())}`)))];
 }
 
-function listFilms() {
-  const names = [...new Set(stopsOf(leaf.sheet).map((stop) => stop.frame.view))];
-  $("what")?.replaceChildren(node("option", { value: "" }, say("the whole sheet")), ...names.map((name) => node("option", { value: name }, calledView(name))));
-}
+const listFilms = () => $("what")?.replaceChildren(node("option", { value: "" }, say("the whole sheet")), ...viewsOf(leaf.sheet).map((name) => node("option", { value: name }, calledView(name))));

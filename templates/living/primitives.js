@@ -33,8 +33,7 @@ const dot = (u, v) => differenceOfProducts(u[0], v[0], -u[1], v[1]);
 
 // q - p and what rounding takes from it.
 function difference(q, p) {
-  const lost = (b, a) => { const w = b - a, back = w - b; return [w, (b - (w - back)) - (a + back)]; };
-  const x = lost(q[0], p[0]), y = lost(q[1], p[1]);
+  const [x, y] = [0, 1].map((i) => twoSum(q[i], -p[i]));
   return [[x[0], y[0]], [x[1], y[1]]];
 }
 
@@ -142,9 +141,12 @@ function conditions(k, u, legs) {
 
 const momentAbout = (k, { n, at }) => plainCross(sub(at, k), n);
 
+const coefficients = (k, all) => [all.map((c) => c.n[0]), all.map((c) => c.n[1]), all.map((c) => momentAbout(k, c))];
+
+const determinantOf = ([x, y, m]) => m[0] * (x[1] * y[2] - x[2] * y[1]) - m[1] * (x[0] * y[2] - x[2] * y[0]) + m[2] * (x[0] * y[1] - x[1] * y[0]);
+
 function correction(k, u, legs) {
-  const all = conditions(k, u, legs), x = all.map((c) => c.n[0]), y = all.map((c) => c.n[1]), m = all.map((c) => momentAbout(k, c));
-  const det = m[0] * (x[1] * y[2] - x[2] * y[1]) - m[1] * (x[0] * y[2] - x[2] * y[0]) + m[2] * (x[0] * y[1] - x[1] * y[0]);
+  const all = conditions(k, u, legs), [x, y, m] = coefficients(k, all), det = determinantOf([x, y, m]);
   const by = ([a, b]) => -[[1, 2], [2, 0], [0, 1]].reduce((sum, [i, j], n) => sum + (a[i] * b[j] - a[j] * b[i]) * all[n].f, 0)
     / (det === 0 ? NaN : det);
   return [[by([y, m]), by([m, x])], by([x, y])];
@@ -239,32 +241,6 @@ function onCourse(phi, angles, values) {
 
 const NEAR = 1e-12;
 
-function slopes(x, y, closed) {
-  if (closed) {
-    const period = x[x.length - 1] - x[0];
-    x = [x[x.length - 2] - period, ...x, x[1] + period];
-    y = [y[y.length - 2], ...y, y[1]];
-  }
-  const h = x.slice(1).map((b, i) => b - x[i]), chord = h.map((d, i) => (y[i + 1] - y[i]) / d), left = [chord[0]], right = [];
-  for (let i = 1; i < h.length; i++) {
-    const w1 = 2 * h[i] + h[i - 1], w2 = h[i] + 2 * h[i - 1];
-    const inner = chord[i - 1] * chord[i] > 0 ? (w1 + w2) / (w1 / chord[i - 1] + w2 / chord[i]) : 0;
-    left.push(h[i - 1] > 0 ? inner : chord[i]);
-    right.push(h[i] > 0 ? inner : chord[i - 1]);
-  }
-  right.push(chord[chord.length - 1]);
-  return closed ? [left.slice(1, -1), right.slice(1, -1)] : [left, right];
-}
-
-function loadDiagram(x, y, smooth, turns) {
-  const period = 2 * Math.PI * turns;
-  if (period && x[x.length - 1] - x[0] < period - NEAR) [x, y] = [[...x, x[0] + period], [...y, y[0]]];
-  if (x.length < 2) [x, y] = [[x[0], x[0]], [y[0], y[0]]];
-  if (!smooth) return { x, y, left: [], right: [], law: "straight" };
-  const [left, right] = slopes(x, y, period && y[0] === y[y.length - 1]);
-  return { x, y, left, right, law: "cubic" };
-}
-
 function read({ x, y, left, right, law }, t, side, period) {
   const last = x[x.length - 1];
   if (period) {
@@ -315,7 +291,6 @@ const PRIMITIVES = {
   "false position": (k, u, amount, ...legs) => moved(k, u, amount, pointed(legs))[0],
   "side of a false position": falseSide,
   "fraction of a swing": swung,
-  "load diagram": loadDiagram,
   "ordinate of a diagram": (curve, at, ahead) => read(curve, at, ahead < 0 ? -1 : 1, 0),
   "ordinate of a periodic diagram": (curve, at, turns, side) => read(curve, at, Math.trunc(side), 2 * Math.PI * turns),
   "ordinate of a curve": ordinateOf,

@@ -40,7 +40,14 @@ function markSvg(mark, n, height) {
   return `<path class="mark" data-n="${n}" ${look(mark.style)} d="${pathOf(g, height)}"/>`;
 }
 
-const leaf = { sheet: null, elements: [], width: 0, height: 0 };
+const leaf = { sheet: null, elements: [], width: 0, height: 0, zoom: null };
+
+const fit = (quick) => leaf.zoom.fit(quick, [-6, -6, leaf.width + 12, leaf.height + 12]);
+
+// A part of the sheet, mm, y upwards, comes in sight.
+function fitBox([x0, y0, x1, y1], pad = 12) {
+  leaf.zoom.go([x0 - pad, leaf.height - y1 - pad, Math.max(x1 - x0, 60) + 2 * pad, Math.max(y1 - y0, 45) + 2 * pad]);
+}
 
 function drawSheet(sheet) {
   const svg = $("sheet"), [width, height] = sheet.size;
@@ -53,9 +60,11 @@ function drawSheet(sheet) {
   drawMarkers(sheet);
 }
 
+const HIT = 9; // a click so near to a mark means it, pixels
+
 // Points along each mark that comes from a step, to find the one that is meant.
-function outlines() {
-  leaf.outlines ??= leaf.sheet.marks.flatMap((mark, n) => {
+function outlines(marks) {
+  return marks.flatMap((mark, n) => {
     if (!mark.step) return [];
     const g = mark.geometry;
     if (g.text) {
@@ -70,7 +79,6 @@ function outlines() {
       return [round.centre[0] + round.radius * Math.cos(t), round.centre[1] + round.radius * Math.sin(t)];
     }) }];
   });
-  return leaf.outlines;
 }
 
 function away([x, y], [ax, ay], [bx, by]) {
@@ -78,14 +86,13 @@ function away([x, y], [ax, ay], [bx, by]) {
   return Math.hypot(x - ax - t * dx, y - ay - t * dy);
 }
 
-// Number of the mark nearest to a point of the sheet, mm; points before lines, where both are near.
-function markAt(p, reach) {
+// Number of the mark nearest to a point, mm; points before lines, where both are near.
+function nearest(lines, marks, p, reach) {
   let best = -1, least = reach;
-  for (const { n, points } of outlines()) {
+  for (const { n, points } of lines) {
     let d = Infinity;
     for (let i = 0; i + 1 < points.length; i++) d = Math.min(d, away(p, points[i], points[i + 1]));
-    const role = leaf.sheet.marks[n].role;
-    if (role === "point" || role === "text") d -= reach * 0.4;
+    if (["point", "text"].includes(marks[n].role)) d -= reach * 0.4;
     if (d < least) [best, least] = [n, d];
   }
   return best;

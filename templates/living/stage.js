@@ -1,17 +1,16 @@
 // The linkage in motion: its views drawn for any crank angle from what their marks hang on.
 
-const stage = { cards: [], playing: false, seconds: 6, last: 0, lost: null, vanes: false };
+const stage = { cards: [], playing: false, seconds: 6, last: 0, vanes: false };
 
-// One view of each plan, at the highlighted position where there is one.
+// One view of each plan, at the highlighted position where there is one; of groups and their forces every view.
 function liveViews() {
   const all = record.sheets.flatMap((sheet) => (sheet.live ?? []).map((live) => ({ ...live, sheet }))), main = all.find((v) => v.plan === "positions");
-  const kept = new Map();
-  for (const one of all) {
-    const key = one.plan.startsWith("positions") || one.marks.some((m) => m.kind !== "text" && m.along.length === 1 && m.role === "vector") ? one.view : one.plan;
-    const known = kept.get(key);
-    if (!known || (known.position !== main?.position && one.position === main?.position)) kept.set(key, one);
+  const loaded = (view) => view.marks.some((m) => m.kind !== "text" && m.along.length === 1 && m.role === "vector"), kept = new Map();
+  for (const one of [...all.filter((v) => v.position === main?.position), ...all]) {
+    const key = one.plan.startsWith("positions") || loaded(one) ? one.view : one.plan;
+    if (!kept.has(key)) kept.set(key, one);
   }
-  const first = (v) => (v === main ? 0 : v === kept.get("velocities") ? 1 : v === kept.get("accelerations") ? 2 : 3);
+  const first = (v) => (v === main ? 0 : 1 + ["velocities", "accelerations", v.plan].indexOf(v.plan));
   return [...kept.values()].sort((a, b) => first(a) - first(b));
 }
 
@@ -38,7 +37,7 @@ function placer(values, shrunk = 1) {
   };
   const at = (mark, [id, x, y, other, share, dx = 0, dy = 0], u) => (other === true // a length of the mechanism
     ? add(point(mark, id), mul([x / shrunk, y / shrunk], u)) : add(add(place(mark, id, other, share), mul([x, y], u)), [dx, dy]));
-  return { direction, point, at };
+  return { direction, point, at, shrunk };
 }
 
 function geometryOf(mark, placed) {
@@ -54,34 +53,42 @@ const defined = (g) => pointsOf(g).every((z) => Number.isFinite(z[0]) && Number.
 
 function makeCard(live, pick = ask) {
   const svg = svgNode("svg", { role: "img", "aria-label": live.view }), marks = live.marks.filter((m) => m.kind !== "path"), paths = live.marks.filter((m) => m.kind === "path");
-  svg.innerHTML = '<g class="paths"></g><g class="marks"></g><g class="over"></g>';
+  svg.innerHTML = `<g class="paths"></g><g class="marks">${marks.map((mark) => (mark.kind === "text" ? `<text class="mark" font-size="${mark.height / CAPITAL}">${plain(mark.string.replace(`(${live.position})`, ""))}</text>`
+    : mark.kind === "fill" ? '<path class="mark fill"/>' : `<path class="mark" ${look(mark.style)}/>`)).join("")}</g><g class="over"></g>`;
   // What is said of the position that it is drawn for on the sheet does not hold in motion.
   const position = say("position {label}", { label: live.position }), from = live.view.toLowerCase().indexOf(position.toLowerCase());
   const name = from < 0 ? live.view : live.view.slice(0, from).replace(/[\s,(]+$/, "");
   const caption = node("figcaption", {}, name), card = { live, name, svg, marks, paths, caption, hidden: marks.map(() => false), drawn: marks.map(() => ""), seen: false, figure: node("figure", { class: "card" }, caption, svg) };
   card.ends = [...new Map(marks.filter((m) => m.kind !== "text" && m.role !== "text").flatMap((m) => m.at.map(([id]) => [id, m])))].map(([id, m]) => [m, id]);
-  card.elements = marks.map((mark) => {
-    const element = svgNode(mark.kind === "text" ? "text" : "path", { class: mark.kind === "fill" ? "mark fill" : "mark" });
-    if (mark.kind === "text") { element.setAttribute("font-size", mark.height / CAPITAL); element.textContent = mark.string.replace(`(${live.position})`, ""); }
-    else if (mark.kind !== "fill") { const s = record.styles[mark.style]; element.setAttribute("stroke-width", s.width); if (s.pattern.length) element.setAttribute("stroke-dasharray", s.pattern.join(" ")); }
-    element.addEventListener("click", () => { const id = live.sheet.marks.find((m) => m.id === mark.id)?.step; if (id) pick(id); });
-    svg.querySelector(".marks").append(element);
-    return element;
+  card.elements = [...svg.querySelectorAll(".marks > *")];
+  card.over = svg.querySelector(".over");
+  card.sources = marks.map((mark) => live.sheet.marks.find((m) => m.id === mark.id));
+  svg.addEventListener("click", (event) => {
+    if (event.target.closest(".handle")) return;
+    const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse()), placed = placer(parts(machine.phi), card.shrunk);
+    const there = marks.map((mark, n) => ({ ...mark, step: card.sources[n]?.step, geometry: geometryOf(mark, placed) }));
+    const shown = outlines(there).filter(({ n }) => defined(there[n].geometry) && !card.elements[n].matches("[hidden], .undrawn"));
+    const n = nearest(shown, there, [x, -y], HIT / svg.getScreenCTM().a);
+    if (n >= 0) pick(card.sources[n].step);
   });
   return card;
 }
 
+// Places that a card has room for: the ends of what is shown, and so much around a step that its guess may go there.
+function heldBy(card, placed) {
+  const ends = card.ends.filter(([, id]) => card.shows?.(id) ?? true).map(([mark, id]) => placed.point(mark, id)), { id, reach } = card.around ?? {};
+  return id ? [...ends, ...[-1, 1].map((sign) => add(placed.point(card.marks[0], id), scale(sign * reach / card.marks[0].mu[0] / placed.shrunk, [1, 1])))] : ends;
+}
+
 // A polygon of forces or a group keeps to the middle of its card; a plan with a pole keeps its pole.
 function centre(card, placed) {
-  const [x0, y0, x1, y1] = extentOf(card.ends.map(([mark, id]) => placed.point(mark, id))), [w, h] = add(roomOf(card), [30, 24]);
+  const [x0, y0, x1, y1] = extentOf(heldBy(card, placed)), [w, h] = add(roomOf(card), [30, 24]);
   if (x0 <= x1) card.svg.setAttribute("viewBox", `${(x0 + x1 - w) / 2} ${-(y0 + y1 + h) / 2} ${w} ${h}`);
 }
 
-// What a millimetre of the card stands for, at its size of the sheet.
-function tellScale(card) {
-  const plan = planOf(card.live.plan), mu = card.marks[0].mu[0] * card.shrunk, unit = plan.unit;
-  const written = UNITS()[unit] ?? unit, text = `${card.name}, μ = ${digits(Number(mu.toPrecision(3)))} ${/[/·]/.test(written) ? `(${written})` : written}/${UNITS().mm ?? "mm"}`;
-  if (card.told !== text) card.caption.textContent = card.told = text;
+function scaleWords(mu, plan) {
+  const unit = unitOf(planOf(plan).unit);
+  return `μ = ${digits(Number(mu.toPrecision(3)))} ${/[/·]/.test(unit) ? `(${unit})` : unit}/${UNITS().mm}`;
 }
 
 // Angles of the whole turn, world, rad.
@@ -92,16 +99,10 @@ const roomOf = (card) => card.room ?? [120, card === stage.cards[0] ? 145 : 66];
 
 // By how much a view is to be smaller than on the sheet to have room in its card.
 function shrinking(card, all) {
-  const [x0, y0, x1, y1] = extentOf(all.flatMap((values) => {
-    const placed = placer(values);
-    return card.ends.map(([mark, id]) => placed.point(mark, id));
-  }));
+  const [x0, y0, x1, y1] = extentOf(all.flatMap((values) => heldBy(card, placer(values))));
   const [w, h] = roomOf(card);
   return x0 <= x1 ? Math.max((x1 - x0) / w, (y1 - y0) / h) : 0;
 }
-
-// A polygon or a group of links keeps to the middle of its card, a plan with a pole keeps its pole.
-const isCentred = (card) => card.room || card.live.plan !== "positions" && planOf(card.live.plan).pole === undefined;
 
 // What all views are in the course of a turn; taken anew when a given number is another, for the cards that are seen.
 function takeTurn() {
@@ -113,14 +114,10 @@ function takeTurn() {
 
 // Letters of a plan that would lie on others for much of the turn are left out, each with all of its signs.
 function chooseLetters(card, turn) {
-  const letterings = new Map();
-  card.marks.forEach((mark, n) => {
-    if (mark.role !== "text" || !mark.at) return;
-    if (!letterings.has(mark.lettering)) letterings.set(mark.lettering, []);
-    letterings.get(mark.lettering).push(n);
-  });
+  const letters = card.marks.map((mark, n) => ({ n, lettering: mark.role === "text" && mark.at && mark.lettering })).filter((one) => one.lettering);
+  const letterings = [...new Set(letters.map((one) => one.lettering))].map((one) => letters.filter((sign) => sign.lettering === one).map(({ n }) => n));
   const many = Math.min(turn.length, MOMENTS), moments = Array.from({ length: many }, (_, i) => placer(turn[Math.floor(i * turn.length / many)], card.shrunk));
-  const all = [...letterings.values()].map((signs) => ({ signs, boxes: moments.map((placed) => extentOf(signs.flatMap((n) => {
+  const all = letterings.map((signs) => ({ signs, boxes: moments.map((placed) => extentOf(signs.flatMap((n) => {
     const mark = card.marks[n], g = geometryOf(mark, placed);
     if (g.text) { const [x, y] = g.text.at; return [[x, y], [x + 0.55 * mark.height * mark.string.length, y + mark.height]]; }
     return pointsOf(g);
@@ -134,18 +131,18 @@ function chooseLetters(card, turn) {
   card.elements.forEach((element, n) => element.toggleAttribute("hidden", card.left.has(n)));
 }
 
-const MOMENTS = 24, CROWDED = 0.2;
+const MOMENTS = 24, CROWDED = 0.2, COMMON = 1.5, REST_MS = 160;
 
-// The scale of a card, the same for the whole turn; the room of everything that moves in it, paths of points.
+// The scale of a card, that of its common angles; the room of everything that moves in it then, paths of points.
 function frameCard(card, turn = stage.turn) {
+  const sizes = turn.map((one) => shrinking(card, [one])), common = COMMON * [...sizes].sort((a, b) => a - b)[turn.length >> 1] || Infinity, usual = turn.filter((_, n) => sizes[n] <= common);
   card.framed = true;
-  card.centred = isCentred(card);
-  card.shrunk = (card.centred ? Math.max(...turn.map((one) => shrinking(card, [one]))) : shrinking(card, turn)) || 1;
+  card.centred = card.room || card.live.plan !== "positions" && planOf(card.live.plan).pole === undefined;
+  card.usual = card.shrunk = (card.centred ? Math.min(Math.max(...sizes), common) : shrinking(card, usual)) || 1;
   chooseLetters(card, turn);
   if (card.room) return;
-  const moving = card.marks.filter((mark) => mark.role !== "construction" && mark.role !== "text"), placers = (card.centred ? [] : turn).map((values) => placer(values, card.shrunk));
-  const [x0, y0, x1, y1] = boundsOf(placers.flatMap((placed) => moving.map((mark) => ({ geometry: geometryOf(mark, placed) }))).filter(({ geometry }) => defined(geometry)));
-  if (x0 < x1) card.svg.setAttribute("viewBox", `${x0 - 11} ${-y1 - 9} ${x1 - x0 + 22} ${y1 - y0 + 18}`);
+  const moving = card.marks.filter((mark) => mark.role !== "construction" && mark.role !== "text"), placers = (card.centred ? [] : usual).map((values) => placer(values, card.shrunk));
+  card.box = boundsOf(placers.flatMap((placed) => moving.map((mark) => ({ geometry: geometryOf(mark, placed) }))).filter(({ geometry }) => defined(geometry)));
   card.svg.querySelector(".paths").innerHTML = card.paths.map((path) => {
     const points = stage.fine.map((one) => placer(one, card.shrunk).point(path, path.of)), there = points.filter((z) => Number.isFinite(z[0]));
     const closed = there.length === points.length && record.motion.period > 6;
@@ -153,12 +150,23 @@ function frameCard(card, turn = stage.turn) {
   }).join("");
 }
 
+// At an angle at which a plan has no room in its common scale it is as small as it must be, which is told.
+function follow(card, values) {
+  const [x0, y0, x1, y1] = card.box, scaled = (shrunk) => scaleWords(card.marks[0].mu[0] * shrunk, card.live.plan);
+  card.off = x0 < x1 && heldBy(card, placer(values, card.usual)).some(([x, y]) => x < x0 - 1 || y < y0 - 1 || x > x1 + 1 || y > y1 + 1);
+  card.shrunk = card.centred || card.off ? Math.max(card.usual, shrinking(card, [values])) : card.usual;
+  const told = [`${card.name}, ${scaled(card.usual)}`, card.shrunk > card.usual ? `; ${say("here {mu}", { mu: scaled(card.shrunk) })}` : ""];
+  if (String(card.told) !== String(told)) card.caption.replaceChildren(told[0], node("b", {}, told[1]));
+  card.told = told;
+  if (x0 < x1 && !card.off) card.svg.setAttribute("viewBox", `${x0 - 11} ${-y1 - 9} ${x1 - x0 + 22} ${y1 - y0 + 18}`);
+}
+
 // Draw the marks of a card; those that have no place are hidden.
 function drawCard(card, values) {
   if (!card.framed) frameCard(card);
+  if (!card.room) follow(card, values);
   const placed = placer(values, card.shrunk);
-  if (!card.room) tellScale(card);
-  if (card.centred) centre(card, placed);
+  if (card.centred || card.off) centre(card, placed);
   card.marks.forEach((mark, n) => {
     if (card.left.has(n)) return;
     const g = geometryOf(mark, placed), element = card.elements[n], there = defined(g);
@@ -174,14 +182,11 @@ function drawStage() {
   if ($("stage").hidden || !stage.cards.length) return;
   const values = parts(machine.phi), lost = notThere(values);
   for (const card of stage.cards) if (card.seen || card === stage.cards[0]) drawCard(card, values);
-  if (stage.lost !== lost) for (const card of stage.cards) card.figure.classList.toggle("lost", Boolean(lost));
-  stage.lost = lost;
-  tellLost(lost, values);
+  for (const card of stage.cards) card.figure.classList.toggle("lost", Boolean(lost));
+  if ($("lost")) Object.assign($("lost"), { hidden: !lost, innerHTML: lost ? lostWords(lost, values) : "" });
   const first = placer(values, stage.cards[0].shrunk);
-  placeGrip(first);
+  stage.grip(first);
   drawVanes(first, values);
-  $("angle").value = mod(record.motion.sense * (machine.phi - record.motion.start), record.motion.period) * 180 / Math.PI;
-  $("degrees").textContent = momentOf(machine.phi);
   tellNow();
 }
 
@@ -189,80 +194,77 @@ const VANE = 0.45; // length of a velocity on the mechanism beside that in its p
 
 // Velocities as arrows on the mechanism: a point B and the end b of its vector in the plan.
 function drawVanes(placed, values) {
-  const first = stage.cards[0], over = first.svg.querySelector(".over");
-  if (stage.vanes || stage.vaned) for (const old of over.querySelectorAll(".vane, .vanehead")) old.remove();
-  stage.vaned = stage.vanes;
-  const scaled = stage.cards.find((card) => card.live.plan === "velocities");
+  const first = stage.cards[0], scaled = stage.cards.find((card) => card.live.plan === "velocities"), mark = first.marks[0];
+  first.over.replaceChildren();
   if (!stage.vanes || !scaled) return;
-  const mark = first.marks[0], mu = scaled.marks[0].mu[0];
-  for (const id of Object.keys(record.motion.all.results)) {
-    if (!id.startsWith("velocities/") || record.motion.all.results[id][1] !== 2) continue;
-    const point = `positions/${id.slice(11, 12).toUpperCase()}${id.slice(12)}`;
-    if (!(point in record.motion.all.results) || !["point", "vector"].includes(stepOf(id).kind)) continue;
-    const a = placed.point(mark, point), v = scale(VANE / mu / scaled.shrunk, taken(record.motion.all.results[id], values)), long = size(v), b = add(a, v), u = straight(v);
-    if (!(long > 3)) continue;
-    over.append(svgNode("path", { class: "vane", d: polyPath([a, b], 0) }),
-      svgNode("path", { class: "vanehead", d: polyPath([b, add(b, mul(u, [-4, 1])), add(b, mul(u, [-4, -1]))], 0, true) }));
+  for (const [id, place] of Object.entries(record.motion.all.results)) {
+    const point = id.startsWith("velocities/") && place[1] === 2 && pointOf(id);
+    if (!point || stepOf(point).name.toLowerCase() !== stepOf(id).name) continue;
+    const a = placed.point(mark, point), v = scale(VANE / scaled.marks[0].mu[0] / scaled.shrunk, taken(place, values));
+    if (size(v) > 3) arrow(first, "vane", a, add(a, v));
   }
+}
+
+// The point of the mechanism that an end of a vector is the velocity, or acceleration, of.
+function pointOf(id) {
+  const name = stepOf(id).name, found = [name, name.replace(/(?<=.)\d+$/, "")].map((one) => `positions/${one[0].toUpperCase()}${one.slice(1)}`);
+  return found.find((one) => one in record.motion.all.results && stepOf(one).kind === "point");
+}
+
+const stroke = (card, kind, points, closed = false) => card.over.append(svgNode("path", { class: kind, d: polyPath(points, 0, closed) }));
+
+function arrow(card, kind, a, b) {
+  const u = straight(sub(b, a));
+  stroke(card, kind, [a, b]);
+  if (Number.isFinite(u[0])) stroke(card, `${kind} solid`, [b, add(b, mul(u, [-3.4, 0.75])), add(b, mul(u, [-3.4, -0.75]))], true);
 }
 
 const LEAST = 23, SHAPE = 19 / 23; // width of a card at least, rem, and the height of its drawing beside that
 
 // Cards as large as all of them have room on the screen with; where they have none they are scrolled.
 function fitCards() {
-  const place = $("stage"), rem = parseFloat(getComputedStyle(document.documentElement).fontSize), gap = 0.8 * rem, above = 2 * rem;
-  const width = place.clientWidth - gap, most = Math.max(Math.floor(width / (LEAST * rem + gap)), 1);
-  let best = null;
-  for (let columns = 1; columns <= most; columns++) {
-    const rows = Math.ceil((stage.cards.length + 1) / columns), room = (place.clientHeight - gap) / rows - above - gap;
-    const wide = Math.min(width / columns - gap, room / SHAPE);
-    if (wide >= LEAST * rem && !(best?.wide >= wide)) best = { columns, wide };
-  }
-  for (const [name, value] of [["--columns", `repeat(${best?.columns}, 1fr)`], ["--high", `${best?.wide * SHAPE}px`]]) {
-    if (best) place.style.setProperty(name, value); else place.style.removeProperty(name);
-  }
+  const place = $("stage"), rem = parseFloat(getComputedStyle(document.documentElement).fontSize), gap = 0.8 * rem, width = place.clientWidth - gap;
+  const wide = Array.from({ length: Math.max(Math.floor(width / (LEAST * rem + gap)), 1) }, (_, n) => {
+    const rows = Math.ceil((stage.cards.length + 1) / (n + 1)), room = (place.clientHeight - gap) / rows - 2 * rem - gap;
+    return Math.min(width / (n + 1) - gap, room / SHAPE);
+  });
+  const best = Math.max(...wide), fits = best >= LEAST * rem;
+  place.style.setProperty("--columns", fits ? `repeat(${wide.indexOf(best) + 1}, 1fr)` : "");
+  place.style.setProperty("--high", fits ? `${best * SHAPE}px` : "");
 }
 
 function openStage() {
   if (!stage.cards.length) {
-    stage.cards = liveViews().map(makeCard);
+    stage.cards = liveViews().map((live) => makeCard(live));
     stage.cards[0]?.figure.classList.add("first");
     $("stage").append(...stage.cards.map((card) => card.figure));
     const watch = new IntersectionObserver((all) => {
       for (const { target, isIntersecting } of all) stage.cards.find((card) => card.figure === target).seen = isIntersecting;
       drawStage();
     }, { root: $("stage") });
-    for (const card of stage.cards) watch.observe(card.figure);
+    for (const card of stage.cards) {
+      watch.observe(card.figure);
+      card.figure.append(control("", "⤢", "this card large", () => { card.figure.classList.toggle("large"); card.figure.scrollIntoView(); }, { class: "enlarge" }));
+    }
     new ResizeObserver(fitCards).observe($("stage"));
-    addEventListener("beforeprint", () => { if (!$("stage").hidden) for (const card of stage.cards) drawCard(card, parts(machine.phi)); });
-    makeGrip();
+    stage.grip = makeGrip(stage.cards[0]);
   }
   takeTurn();
   drawStage();
 }
 
 function stageBar() {
-  const degrees = record.motion.period * 180 / Math.PI;
-  return [
-    node("button", { type: "button", class: "play spin", id: "spin", "aria-label": say("play"), onclick: () => spin(!stage.playing) }, "▶"),
-    node("input", { type: "range", class: "scrub", id: "angle", min: 0, max: degrees, step: 0.1, "aria-label": say("crank angle"),
-      oninput: (event) => { spin(false); turn(record.motion.start + record.motion.sense * Number(event.target.value) * Math.PI / 180); } }),
-    node("output", { class: "count", id: "degrees" }),
-    node("button", { type: "button", "aria-pressed": "false", onclick: (event) => {
-      stage.vanes = !stage.vanes;
-      event.target.setAttribute("aria-pressed", String(stage.vanes));
-      drawStage();
-    } }, say("velocities")),
+  const vanes = node("button", { type: "button", "aria-pressed": String(stage.vanes), onclick: () => { stage.vanes = !stage.vanes; vanes.setAttribute("aria-pressed", String(stage.vanes)); drawStage(); } }, say("velocities"));
+  return [spinner("▶", "play"), angleSlider(), node("output", { class: "count angle" }), vanes,
     node("select", { "aria-label": say("speed"), onchange: (event) => { stage.seconds = Number(event.target.value); } },
-      ...[12, 6, 3].map((s) => node("option", { value: s, selected: s === 6 }, say("a turn in {s} s", { s })))),
-  ];
+      ...[12, 6, 3].map((s) => node("option", { value: s, selected: s === stage.seconds }, say("a turn in {s} s", { s }))))];
 }
 
 function spin(on) {
   stage.playing = on;
   for (const button of document.querySelectorAll(".spin")) {
-    button.textContent = on ? "❚❚" : button.id ? "▶" : "⟳";
-    button.setAttribute("aria-label", say(on ? "pause" : button.id ? "play" : "turn the crank on the sheet"));
+    button.textContent = on ? "❚❚" : button.dataset.sign;
+    button.setAttribute("aria-label", say(on ? "pause" : button.dataset.key));
   }
   if (!on) return;
   stage.last = performance.now();

@@ -4,7 +4,7 @@ import { $, bytesOf, button, download, dropZone, node, picture, say } from "./do
 import { aborted, ask, latest } from "./door.js";
 import { project } from "./project.js";
 import { progress } from "./take.js";
-import { zoomable } from "./zoom.js";
+import { framed } from "./zoom.js";
 
 const work = latest();
 const ACCEPT = ".jpg,.jpeg,.png,.pdf,.dxf,.csv";
@@ -60,7 +60,7 @@ function overlay(found, numbers) {
   const leaf = node("div", { class: "leaf" }, theirs, ours, edge, ...[...numbers].map(([one, n]) => button(String(n), () => zoom.to(...one.at_mm), {
     class: `flag ${one.verdict}`, "aria-label": one.said, "data-x": one.at_mm[0], "data-y": one.at_mm[1] })));
   for (const flag of leaf.querySelectorAll(".flag")) Object.assign(flag.style, { left: `${flag.dataset.x}px`, top: `${594 - flag.dataset.y}px` });
-  const zoom = zoomable(leaf);
+  const zoom = framed(leaf);
   const slide = node("input", { type: "range", min: 0, max: 100, step: 0.2, value: 50, "aria-label": say("between theirs and ours"), oninput: () => show() });
   const show = () => { ours.style.clipPath = `inset(0 0 0 ${slide.value}%)`; theirs.style.clipPath = `inset(0 ${100 - slide.value}% 0 0)`; edge.style.left = `${slide.value}%`; };
   const both = node("input", { type: "checkbox", onchange: () => leaf.classList.toggle("both", both.checked) });

@@ -10,6 +10,7 @@ export function node(name, attributes = {}, ...inside) {
   const found = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) {
     if (key.startsWith("on")) found.addEventListener(key.slice(2), value);
+    else if (key === "html") found.innerHTML = value;
     else if (value !== false && value !== undefined && value !== null) found.setAttribute(key, value === true ? "" : value);
   }
   found.append(...inside.flat().filter((one) => one || one === ""));
@@ -64,3 +65,16 @@ async function dropped(data) {
   for (const entry of entries) await walk(entry, "");
   return entries.length ? found : [...data.files];
 }
+
+// Pictures of what takes some time, by the share of it that is over; a later one of the same owner takes its place.
+export function animate(owner, ms, picture, then = () => {}) {
+  cancelAnimationFrame(owner.moving);
+  const start = performance.now(), frame = (now) => {
+    const t = ms ? Math.min(Math.max((now - start) / ms, 0), 1) : 1;
+    picture(t);
+    if (t < 1) owner.moving = requestAnimationFrame(frame); else then();
+  };
+  frame(start);
+}
+
+export const still = () => matchMedia("(prefers-reduced-motion: reduce)").matches;

@@ -3,16 +3,16 @@
 import { $, button, node, picture, say } from "./dom.js";
 import { aborted, ask, latest } from "./door.js";
 import { project } from "./project.js";
-import { zoomable } from "./zoom.js";
+import { framed } from "./zoom.js";
 
 const work = latest();
 const view = { titles: [], at: 0, pictures: [], state: [], zoom: null, img: null };
 
 export function startSheets() {
   view.img = node("img", { alt: "", draggable: "false", class: "leaf" });
-  view.zoom = zoomable(view.img);
+  view.zoom = framed(view.img);
   $("sheets").replaceChildren(node("div", { class: "bar", id: "leaves" }), view.zoom.frame,
-    node("div", { class: "tools" }, button("+", () => view.zoom.by(1.4), { "aria-label": say("zoom in") }), button("−", () => view.zoom.by(1 / 1.4), { "aria-label": say("zoom out") }), button("⤢", () => view.zoom.fit(), { "aria-label": say("whole sheet") })));
+    node("div", { class: "tools" }, ...view.zoom.tools));
 }
 
 // Nothing more is drawn: what is shown is older than the text.
@@ -43,8 +43,8 @@ export async function drawSheets(titles) {
 
 function showLeaves() {
   const state = view.state[view.at], shown = view.pictures[view.at];
-  $("leaves").replaceChildren(...view.titles.map((title, n) => button(say("sheet {n}", { n: n + 1 }), () => { view.at = n; showLeaves(); },
-    { role: "tab", "aria-selected": String(n === view.at), class: { "": false, drawing: "drawing", old: false }[view.state[n]] ?? "failed" })),
+  $("leaves").replaceChildren(node("div", { role: "tablist" }, ...view.titles.map((title, n) => button(say("sheet {n}", { n: n + 1 }), () => { view.at = n; showLeaves(); },
+    { role: "tab", "aria-selected": String(n === view.at), class: { "": false, drawing: "drawing", old: false }[view.state[n]] ?? "failed" }))),
   node("span", { class: "hint", role: "status" }, state === "drawing" ? say("drawing") : ""));
   view.zoom.frame.classList.toggle("old", ["drawing", "old"].includes(state));
   if (shown && view.img.shown !== shown) { picture(view.img, shown); view.img.shown = shown; view.img.alt = say("sheet {n}", { n: view.at + 1 }); }

@@ -37,7 +37,7 @@ def test_order_of_the_acceleration_plan():
     stops = lesson_of(record_of(made("lugansk/shaper")), "accelerations")["stops"]
     told = [(stop["kind"], stop["step"].partition("/")[2], stop.get("tail", "").partition("/")[2]) for stop in stops]
     assert told[:7] == [("lay", "b", "π"), ("lay", "k", "b"), ("line", "b3", "k"), ("lay", "n", "π"), ("line", "b3", "n"),
-                        ("meet", "b3", ""), ("rate", "ε3", "π")]
+                        ("meet", "b3", ""), ("rate", "ε3", "n")]
 
 
 def test_equation_of_the_acceleration_plan():
@@ -68,4 +68,51 @@ def test_the_address_tells_the_moment(tmp_path):
         page.now("location.hash = '#plan=velocities&step=3&phi=100&crank.length=0.082'")
         page.until("lesson.told.plan === 'velocities'")
         assert page.now("[lesson.at, machine.given['crank.length'], Math.round(machine.phi * 180 / Math.PI)]") == [2, 0.082, 100]
+        assert page.said == []
+
+
+DRAWN = """(() => {
+  const card = lesson.cards[1], drawn = card.sources.filter((mark, n) => !card.elements[n].matches(".undrawn"));
+  return [...new Set(drawn.filter((mark) => mark.role === "vector").map((mark) => mark.name))];
+})()"""
+
+
+@javascript.browser
+def test_a_vector_is_there_when_its_term_is_filled_in(tmp_path):
+    """Of a polygon of forces, whose last sides are closed one after another; the rate of turning comes from the tangential part."""
+    path = tmp_path / "page.html"
+    path.write_text(made("lugansk/shaper"), encoding="utf-8")
+    lesson = lesson_of(record_of(made("lugansk/shaper")), "force-5")
+    with browser(tmp_path / "profile") as page:
+        page.open(f"{path.as_uri()}#plan=force-5&step=1&phi=126")
+        page.until("!!document.querySelector('html[data-ready]')")
+        for n in range(len(lesson["stops"])):
+            page.now(f"goStop({n}, true)")
+            terms = [term for side in lesson["equations"][0]["sides"] for term in side]
+            names = {f"{t['tail'].partition('/')[2]}–{t['head'].partition('/')[2]}" for t in terms if t["drawn"] <= n}
+            assert set(page.now(DRAWN)) == names
+        assert page.said == []
+
+
+@javascript.browser
+def test_the_lesson_on_paper(tmp_path):
+    """A step a line, each with the vectors drawn up to then; what was seen before is seen after; a sheet is printed whole."""
+    path = tmp_path / "page.html"
+    path.write_text(made("lugansk/shaper"), encoding="utf-8")
+    stops = lesson_of(record_of(made("lugansk/shaper")), "accelerations")["stops"]
+    with browser(tmp_path / "profile") as page:
+        page.open(f"{path.as_uri()}#plan=accelerations&step=3&phi=126")
+        page.until("!!document.querySelector('html[data-ready]')")
+        page.now("dispatchEvent(new Event('beforeprint'))")
+        told = page.now("[...document.querySelectorAll('#handout article')].map((one) => "
+                        "[one.querySelector('.told').textContent, one.querySelectorAll('svg .mark:not(.undrawn)').length])")
+        assert [stop["title"] in said for (said, _), stop in zip(told, stops, strict=True)] == [True] * len(stops)
+        many = [marks for _, marks in told]
+        assert many == sorted(many)
+        assert many[0] < many[-1]
+        assert page.now("lesson.at") == 2
+        page.now("tmm.open('draw', 1); leaf.zoom.by(5); dispatchEvent(new Event('beforeprint'))")
+        x, y, width, height = (float(one) for one in page.until("$('sheet').getAttribute('viewBox')").split())
+        assert x < 0 < 841 < x + width
+        assert y < 0 < 594 < y + height
         assert page.said == []

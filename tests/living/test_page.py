@@ -183,7 +183,7 @@ ANGLES = 20
 
 def other_numbers(record, rng, share):
     """Other lengths, masses, loads and a speed, different by some share; the fixed points as well."""
-    own = [g for g in record["motion"]["givens"] if "line" in g and (
+    own = [g for g in record["motion"]["givens"] if "places" in g and (
         g["unit"] in ("m", "kg", "kg*m2", "rad/s", "N", "N*m") or ".table" in g["name"])]
     return {g["name"]: (np.asarray(g["value"]) * rng.uniform(1 - share, 1 + share)).tolist() for g in own}
 
@@ -307,7 +307,7 @@ for (const name of ["error", "unhandledrejection"]) addEventListener(name, (e) =
     const told = new Set();
     for (let i = 0; i < 40; i++) {
       tmm.turn(i / 6);
-      for (const card of document.querySelectorAll(".card:has(.mark[d])")) told.add(card.querySelector("figcaption").textContent);
+      for (const one of document.querySelectorAll(".card:has(.mark[d]) figcaption")) told.add(one.firstChild.textContent);
     }
     scales = told.size - document.querySelectorAll(".card:has(.mark[d])").length;
   }
@@ -344,6 +344,125 @@ def test_every_film_runs_to_its_end(name, sheets, tmp_path):
     assert found["steps"] > 40
     assert found["loaded"] == 0
     assert found["scales"] == 0, "a plan keeps its scale factor during a turn"
+
+
+TOLD_TOO_EARLY = """(() => {
+  const said = [];
+  for (const sheet of record.sheets) {
+    const stops = stopsOf(sheet), at = new Map();
+    stops.forEach((stop, n) => { const key = `${stop.id} ${stop.label}`; if (!at.has(key)) at.set(key, n); });
+    stops.forEach((stop, n) => {
+      for (const id of chain(stop.id)) if (at.get(`${id} ${stop.label}`) > n) said.push([sheet.sheet, n, stop.id, id]);
+    });
+  }
+  return said;
+})()"""
+LAST_OF_VIEW = """((plan) => {
+  const sheet = record.sheets.find((one) => one.plans.has(plan));
+  openTab("draw", sheet.sheet);
+  takeFilm(liveViews().find((view) => view.plan === plan).view);
+  return film.stops.map((stop) => stop.id);
+})"""
+
+
+@javascript.browser
+@pytest.mark.parametrize("name", ["lugansk/shaper", *(seldom(name) for name in NAMES[1:])])
+def test_no_step_is_told_before_what_it_is_made_of(name, tmp_path):
+    """On every sheet; and a plan that is played alone tells how its links turn, too."""
+    path = tmp_path / "page.html"
+    path.write_text(made(name), encoding="utf-8")
+    with browser(tmp_path / "profile") as page:
+        page.open(path.as_uri())
+        page.until("!!document.querySelector('html[data-ready]')")
+        assert page.now(TOLD_TOO_EARLY) == []
+        if name == "lugansk/shaper":
+            assert "velocities/ω3" in page.now(f"{LAST_OF_VIEW}('velocities')")
+            assert "accelerations/ε3" in page.now(f"{LAST_OF_VIEW}('accelerations')")
+        assert page.said == []
+
+
+FOUND = """((text) => {
+  const box = $("find");
+  box.value = text;
+  box.dispatchEvent(new Event("change"));
+  return [asked.id, $("panel").querySelector("h2").textContent];
+})"""
+
+
+@javascript.browser
+def test_names_of_the_sheet_are_found(tmp_path):
+    """By letter and plan, by id, by the path of a result; what there is not is told."""
+    path, record = tmp_path / "page.html", record_of(made("lugansk/shaper"))
+    path.write_text(made("lugansk/shaper"), encoding="utf-8")
+    with browser(tmp_path / "profile") as page:
+        page.open(path.as_uri())
+        page.until("!!document.querySelector('html[data-ready]')")
+        inertia = record["results"]["flywheel.J_flywheel"]["step"]
+        for text, step in (("ω3", "velocities/ω3"), ("b3 · план ускорений", "accelerations/b3"),
+                           ("accelerations/k", "accelerations/k"), ("flywheel.J_flywheel", inertia)):
+            assert page.now(f"{FOUND}({text!r})")[0] == step
+        assert page.now(f"{FOUND}('Кощей')")[1] == "Ничего не найдено"
+
+
+ROOM = """(() => {
+  const said = [];
+  let followed = 0;
+  for (const phi of round(90)) {
+    turn(phi);
+    for (const card of stage.cards) {
+      drawCard(card, parts(phi));
+      const placed = placer(parts(phi), card.shrunk), { x, y, width, height } = card.svg.viewBox.baseVal;
+      const [x0, y0, x1, y1] = extentOf(card.ends.map(([mark, id]) => placed.point(mark, id)));
+      if (x0 < x - 1 || x1 > x + width + 1 || -y1 < y - 1 || -y0 > y + height + 1) said.push([card.live.plan, phi, "cut off"]);
+      const smaller = card.shrunk > card.usual, note = card.caption.querySelector("b").textContent;
+      if (smaller !== Boolean(note)) said.push([card.live.plan, phi, note]);
+      followed += smaller;
+    }
+  }
+  return [said, followed];
+})()"""
+
+
+@javascript.browser
+@pytest.mark.parametrize("name", ["lugansk/shaper", seldom("press"), seldom("loom")])
+def test_a_plan_in_motion_has_room_and_tells_when_its_scale_follows(name, tmp_path):
+    """At every angle all that is drawn is in sight; a scale other than the common one is told."""
+    path = tmp_path / "page.html"
+    path.write_text(made(name, (1,)), encoding="utf-8")
+    with browser(tmp_path / "profile") as page:
+        page.open(path.as_uri())
+        page.until("!!document.querySelector('html[data-ready]')")
+        page.now("tmm.open('turn')")
+        said, followed = page.now(ROOM)
+        assert said == []
+        assert followed > 0
+        assert page.said == []
+
+
+QUARTER_OF_CD = """(() => {
+  const card = stage.cards[0], placed = placer(parts(machine.phi), card.shrunk), mark = card.marks[0];
+  const [c, d] = ["positions/C", "positions/D"].map((id) => placed.point(mark, id)), m = step(c, 0.25, sub(d, c));
+  const p = new DOMPoint(m[0], -m[1]).matrixTransform(card.svg.getScreenCTM());
+  return [p.x, p.y];
+})()"""
+
+
+@javascript.browser
+def test_a_click_beside_a_line_means_it(tmp_path):
+    """In motion, by a real pointer 7 px off a link; far from everything nothing is meant."""
+    path = tmp_path / "page.html"
+    path.write_text(made("lugansk/shaper", (1,)), encoding="utf-8")
+    with browser(tmp_path / "profile") as page:
+        page("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
+        page.open(path.as_uri())
+        page.until("!!document.querySelector('html[data-ready]')")
+        page.now("tmm.open('turn'); tmm.turn(2); new Promise((done) => setTimeout(done, 200))")
+        x, y = page.now(QUARTER_OF_CD)
+        for off, meant in ((7, True), (40, False)):
+            page.now("$('panel').replaceChildren()")
+            for kind in ("mousePressed", "mouseReleased"):
+                page("Input.dispatchMouseEvent", type=kind, x=x + off, y=y, button="left", clickCount=1)
+            assert page.now("!!$('panel').querySelector('[data-step]')") is meant
 
 
 # --- in motion --------------------------------------------------------------------------------------------------------------

@@ -197,6 +197,10 @@ CURVES = [((0.0, 0.3, 0.3, 1.0), (1.0, 2.0, -1.0, 5.0)), ((0.0, 0.2, 0.5, 0.8, 1
           ((0.1, 0.4, 0.9), (2.0, -1.0, 2.0)), ((0.5,), (3.0,))]
 
 
+TIMES, PLUS = -2.5, 3.0
+"""A load is so many times its table, and so much more."""
+
+
 @pytest.mark.parametrize("smooth", [0.0, 1.0])
 @pytest.mark.parametrize("table", CURVES, ids=["jump", "hill", "valley", "one"])
 def test_diagrams(table, smooth, n, tmp_path):
@@ -205,18 +209,20 @@ def test_diagrams(table, smooth, n, tmp_path):
     rng = np.random.default_rng(9)
     at = np.concatenate((rng.uniform(-0.5, 9, n), np.repeat(table[0], 3), [np.nan]))
     ahead = rng.choice((1.0, -1.0), len(at))
+    x, y = map(np.array, table)
     with np.errstate(all="ignore"):
-        once, periodic = loads.diagram(*map(np.array, table), smooth, 0.0), loads.diagram(*map(np.array, table), smooth, 1.0)
+        once, periodic = (loads.diagram(x, TIMES * y + PLUS, smooth, turns) for turns in (0.0, 1.0))
         own = [loads.ordinate(once, at, ahead), loads.periodic_ordinate(periodic, at, 1.0, -1.0),
                loads.periodic_ordinate(periodic, at, 1.0, 0.0)]
-    run = javascript.modules("digits", "primitives") + """
-    const result = ({ x, y, smooth, at, ahead }) => {
-      const once = loadDiagram(x, y, smooth, 0), periodic = loadDiagram(x, y, smooth, 1), p = PRIMITIVES;
+    run = javascript.modules("digits", "primitives", "machine") + """
+    const result = ({ drawn, times, plus, factor, at, ahead }) => {
+      const [once, periodic] = drawn.map((one) => curveOf({ drawn: one, times, plus }, factor)), p = PRIMITIVES;
       return [at.map((t, i) => p["ordinate of a diagram"](once, t, ahead[i])),
         ...[-1, 0].map((side) => at.map((t) => p["ordinate of a periodic diagram"](periodic, t, 1, side)))];
     };
     """
-    data = {"x": list(table[0]), "y": list(table[1]), "smooth": smooth, "at": told(at), "ahead": told(ahead)}
+    data = {"drawn": [told(loads.diagram(x, y, smooth, turns)) for turns in (0.0, 1.0)], "times": TIMES / 0.7, "factor": 0.7,
+            "plus": PLUS, "at": told(at), "ahead": told(ahead)}
     for found, values in zip(javascript.run(run, data, tmp_path), own, strict=True):
         close(found, values, np.ones(len(at)))
 

@@ -25,7 +25,7 @@ SHEETS = """(async () => {
       const g = mark.geometry, round2 = g.circle ?? g.arc, drawn = g.line ?? g.polyline ?? g.fill;
       const [a, b = a] = drawn ?? [g.text ? g.text.at : step(round2.centre, round2.radius, cis(round2.from ?? 0))];
       if (leaf.sheet !== sheet) openSheet(sheet.sheet, true);
-      clicked({ p: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], pixel: 0.3 });
+      clicked([(a[0] + b[0]) / 2, leaf.height - (a[1] + b[1]) / 2], 0.3);
       if (!asked.id || STRANGE) said.push(`${mark.step}: ${$("panel").textContent.slice(0, 60)}`);
     }
   }
@@ -37,7 +37,8 @@ TURNS = """(async () => {
   openTab("turn");
   for (const card of stage.cards) {
     for (const element of card.elements) {
-      element.dispatchEvent(new MouseEvent("click"));
+      const { x, y, width, height } = element.getBoundingClientRect();
+      card.svg.dispatchEvent(new MouseEvent("click", { clientX: x + width / 2, clientY: y + height / 2 }));
       if (STRANGE) said.push($("panel").textContent.slice(0, 60));
     }
   }

@@ -98,9 +98,9 @@ def _of_motion(project: Project, plan: Plan) -> list[tuple[Step | None, str, Sid
 class _Lesson:
     """One plan.
 
-    A stop has the ``step`` it draws, its ``kind``, ``tail`` and ``head`` of what is drawn, ``across`` if that is turned by a
-    quarter against ``along``, the two points or the direction it is taken from, its ``title``, ``say``, a sentence, ``why`` it is
-    so, and what its size is made of.
+    A stop has the ``step`` it draws, its ``kind``, the ``tail`` of what is drawn, ``ends`` where that is a vector or a side, is
+    ``across`` if it is turned by a quarter against ``along``, the two points or the direction it is taken from, its ``title``,
+    ``say``, a sentence, ``why`` it is so, and what its size is made of.
     """
 
     def __init__(self, index: StepIndex, plan: Plan, equations: list[tuple[Step | None, str, Sides]]) -> None:
@@ -115,12 +115,47 @@ class _Lesson:
                     line = self._line(step, start, along)
                     stops.insert(self._behind(stops, start), line)
             if (one := self._stop(step)) is not None:
+                if one["kind"] in ("lay", "similar"):
+                    one["ends"] = [one["tail"], one["step"]]
                 stops.append(one)
         pole = self.plan.pole
         return {"plan": self.plan.name, "pole": "" if pole is None else self.index.id(self.plan[pole]), "stops": stops,
-                "equations": [{"end": self.index.id(end) if end is not None else "", "head": head, "sides": [
-                    [{"symbol": symbol, "tail": self.index.id(tail), "head": self.index.id(to), "times": 1 if sought else 2}
-                     for symbol, tail, to, sought in side] for side in sides]} for end, head, sides in self.equations]}
+                "equations": self._filled(stops)}
+
+    def _filled(self, stops: list[dict[str, Any]]) -> list[dict[str, Any]]:
+        """The equations, each term with the numbers of the stops that draw it, and the line of its unknown length, or -1.
+
+        The stops get their ``equation``: the last of which something is drawn beyond what those before it were made of; lines
+        the number of the stop ``until`` which they have no end.
+        """
+        drawn = {stop["step"]: n for n, stop in reversed(list(enumerate(stops))) if stop["kind"] != "line"}
+        closed = {tuple(stop["ends"]): n for n, stop in enumerate(stops) if stop["kind"] == "close"}
+        lines = {frozenset((stop["tail"], stop["step"])): n for n, stop in reversed(list(enumerate(stops)))
+                 if stop["kind"] == "line"}
+        met = -1
+        found: list[dict[str, Any]] = []
+        for stop in stops:
+            stop |= {"equation": 0, "until": drawn.get(stop["step"], -1)}
+            if stop["kind"] == "rate":  # what turns the link lies on the line across it
+                head, along = stop["ends"][1], stop["along"]
+                stop["tail"] = next((line["tail"] for line in stops if line["kind"] == "line" and line["across"]
+                                     and (line["step"], line["along"]) == (head, along)), stop["tail"])
+                stop["ends"] = [stop["tail"], head]
+        for end, head, sides in self.equations:
+            told = [[self._term(side, drawn, closed, lines) for side in terms] for terms in sides]
+            begins = [n for side in told for term in side for n in (term["drawn"], term["line"]) if n > met]
+            for stop in stops[min(begins, default=len(stops)):]:
+                stop["equation"] = len(found)
+            met = drawn.get(self.index.id(end), -1) if end is not None else -1
+            found.append({"end": self.index.id(end) if end is not None else "", "drawn": met, "head": head, "sides": told})
+        return found
+
+    def _term(self, term: tuple[str, Step, Step, bool], drawn: Mapping[str, int], closed: Mapping[tuple[str, ...], int],
+              lines: Mapping[frozenset[str], int]) -> dict[str, Any]:
+        symbol, tail, head, sought = term
+        ends = self.index.id(tail), self.index.id(head)
+        return {"symbol": symbol, "tail": ends[0], "head": ends[1], "times": 1 if sought else 2,
+                "line": lines.get(frozenset(ends), -1), "drawn": closed.get(ends, max(drawn.get(end, -1) for end in ends))}
 
     def _behind(self, stops: list[dict[str, Any]], start: Step) -> int:
         """Where a line is told: behind its beginning, if only vectors of the same equation were laid off since; else now."""
@@ -167,10 +202,10 @@ class _Lesson:
             names = [protocol.letter_of(a) for a in step.args]
             return stop | _kind("similar") | {"tail": args[0], "to": args[1], "places": args[2:], "names": names}
         if rule in RATES and all(args):
-            return stop | _kind("rate") | {"along": args[:2], "tail": args[2], "head": args[3],
+            return stop | _kind("rate") | {"along": args[:2], "tail": args[2], "ends": args[2:4],
                                            "name": f"{protocol.letter_of(step.args[0])}{protocol.letter_of(step.args[1])}"}
         if rule is CLOSE:
-            return stop | _kind("close") | {"tail": args[0], "head": args[1]}
+            return stop | _kind("close") | {"tail": args[0], "ends": args[:2]}
         return stop | _kind("draw") if rule.helpers is not None and rule.gives in ("point", "vector", "force") else None
 
 
@@ -180,7 +215,7 @@ def _kind(kind: str) -> dict[str, Any]:
 
 
 def lesson_words() -> dict[str, str]:
-    """Texts of the lesson by their keys."""
+    """Texts of the lesson by their keys: its own, questions of "Where will it go?", and answers to guesses, most of them wrong."""
     return {
         "lesson": tr("Lesson"),
         "mechanism": tr("Mechanism"),
@@ -194,4 +229,48 @@ def lesson_words() -> dict[str, str]:
         "copied": tr("The link is copied"),
         "nothing found": tr("Nothing found"),
         "with other numbers": tr("with other numbers than the project's"),
+        "guess": tr("Where will it go?"),
+        "check": tr("Check"),
+        "show it": tr("Show"),
+        "score": tr("Right at first: {r} of {n}"),
+        "your vector": tr("your vector: {mm} mm"),
+        "your line": tr("your line: {deg}°"),
+        "ask lay": tr("Where will the vector go from {point}? Drag its end."),
+        "ask line": tr("How will the line pass through {point}? Turn it."),
+        "ask similar": tr("Where on the plan is {head}? Drag the end of the vector."),
+        "ask rate": tr("Which sense has {rate}?"),
+        "clockwise": tr("clockwise"),
+        "counter-clockwise": tr("counter-clockwise"),
+        "grip of the guess": tr("Your guess: arrows left and right turn it, up and down change its length"),
+        "right": tr("Right: off by {deg}° and {mm} mm, a pencil's reach."),
+        "right line": tr("Right: off by {deg}°."),
+        "right sense": tr("Right."),
+        "direction right": tr("The direction is right."),
+        "normal out": tr("The normal acceleration points to the centre {centre}, not outwards."),
+        "nothing across": tr("Across {line} nothing is laid off: {rate} = const, nothing tangential."),
+        "normal across": tr("Across {line} goes the tangential one; the normal goes along, to {centre}."),
+        "wrong centre": tr("{point} turns about {centre}, not about {other}."),
+        "not squared": tr("But that is ω·l, a velocity: here ω is squared."),
+        "other rate": tr("But {other} was taken; here it is {rate}."),
+        "other length": tr("But {other} was taken; here it is {line}."),
+        "against": tr("Turned against {rate}: the link turns {sense}."),
+        "not turned": tr("That is {line} itself: turn it by 90° in the sense of {rate}."),
+        "no two": tr("But the two is missing: a = 2·ω·V."),
+        "slide across": tr("It slides along {line}: parallel to it."),
+        "tangent along": tr("Along {line} lies the normal one; the tangential goes across."),
+        "rotation along": tr("The link turns: its point moves across {line}, not along."),
+        "force across": tr("Across {line} lies the tangential part; this one lies along."),
+        "force along": tr("A guide presses across {line}, not along."),
+        "other link": tr("That is the direction of {other}; here {line} gives it."),
+        "not on ray": tr("{names} are on one line, so are {ends}."),
+        "other side": tr("The other way round: the order of {names} is that of {ends}."),
+        "similar figures": tr("The figure of a link and that of its vectors are similar and lettered the same way round."),
+        "ratio inverse": tr("Ratio upside down: |{ends}| : |{to}| = {names}."),
+        "sense wrong": tr("Put {vector} at {point}: it turns the link the other way."),
+        "force against": tr("The force acts the other way."),
+        "zero": tr("Here the vector is zero: {why}. Shrink the arrow to a point."),
+        "too long": tr("But {n} times too long: divide by the scale factor."),
+        "too short": tr("But {n} times too short: divide by the scale factor."),
+        "off": tr("Off by {deg}°: along or across which link?"),
+        "off force": tr("Off by {deg}°: parallel to the force on the mechanism."),
     }

@@ -19,7 +19,7 @@ from tmm_sheets.construction.step import Given, GivenNumber, GivenPoint, Step, o
 from tmm_sheets.mechanism.groups.triad import NEAR_DIRECTION, NEAR_PLACE, TriadGroup
 from tmm_sheets.methods.flywheel.flywheel import Flywheel
 from tmm_sheets.methods.flywheel.reduced import Reduction, turning_back
-from tmm_sheets.methods.linkage.loads import DIAGRAM, PISTON
+from tmm_sheets.methods.linkage.loads import DIAGRAM, PISTON, diagram
 from tmm_sheets.methods.linkage.numbering import PARTS, PARTS_OF_TURNS, SENSES
 from tmm_sheets.task.schema import ForceTable, MomentTable
 
@@ -33,7 +33,7 @@ PRIMITIVES = frozenset((
     "difference of products", "cross", "dot", "unit", "lines meet", "arc cuts arc", "arc cuts line", "tangent", "tangent direction",
     "distance from the crank's point", "tangent from the crank's point", "half-chord of two arcs", "half-chord of arc and line",
     "foot on a guide", "corner of a triangle on three legs", "direction of a triangle on three legs", "value on a followed course",
-    "false position", "side of a false position", "fraction of a swing", "load diagram", "ordinate of a diagram",
+    "false position", "side of a false position", "fraction of a swing", "ordinate of a diagram",
     "ordinate of a periodic diagram", "ordinate of a curve", "value or its limit", "angle turned", "angle turned to a point",
     "within the first turn", "round to a step", "15 digits"))
 """What templates/living/primitives.js has; a step that takes another one is not computed in the page."""
@@ -139,10 +139,11 @@ def _fixed(step: Step) -> dict[str, Any]:
     if step.rule is not DIAGRAM:
         return {"found": told(step.value)}
     x, acts, smooth, turns = step.args
-    y, more = drawn_through(step), acts.args[1:] if isinstance(acts, Step) else ()
-    kind = {"piston": more} if isinstance(acts, Step) and acts.rule is PISTON else {"sign": more[0]} if more else {}
-    return {"diagram": y.name, "symbol": y.symbol, "x": told(value_of(x)), "y": told(value_of(y)), "smooth": float(smooth),
-            "turns": float(turns), **kind}
+    y, more = drawn_through(step), acts.args[1:] if isinstance(acts, Step) else (1.0,)
+    area = np.pi * more[0]**2 / 4 if isinstance(acts, Step) and acts.rule is PISTON else 0.0
+    times, plus = (area, -area * more[1]) if area else (float(more[0]), 0.0)
+    drawn = diagram(value_of(x), value_of(y), smooth, turns)
+    return {"diagram": y.name, "symbol": y.symbol, "drawn": told(drawn), "times": times, "plus": plus}
 
 
 def _studied(project: Project) -> Study:

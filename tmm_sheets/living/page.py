@@ -27,15 +27,15 @@ from tmm_sheets.record import recording
 from tmm_sheets.record.recording import called
 from tmm_sheets.resources import template
 from tmm_sheets.task import edited_text, units
-from tmm_sheets.toml_lines import KeyPath, scan
+from tmm_sheets.toml_lines import KeyPath, nodes, scan
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
     from tmm_sheets.task.variant import Variant
 
-MODULES = ("digits", "primitives", "strokes", "courses", "searches", "formula", "data", "flywheel", "machine", "sheet", "viewport",
-           "steps", "ask", "markers", "player", "stage", "drag", "change", "lesson", "address", "main")
+MODULES = ("digits", "primitives", "strokes", "courses", "searches", "formula", "data", "flywheel", "machine", "sheet",
+           "steps", "ask", "markers", "player", "stage", "drag", "change", "lesson", "guess", "address", "main")
 """Modules of the page in templates/living, in the order in which they stand in it."""
 
 
@@ -57,8 +57,8 @@ def page(project: Project, numbers: Iterable[int] = (), plan: str = "") -> tuple
         raise problem
     made = motion(project, recording.book_of(project)) if moving else None
     if made is not None:
-        lines = scan(project.variant.text).lines
-        record["motion"] = made.told() | {"givens": [g | slider(project.variant, lines, g["name"]) for g in made.givens]}
+        places = scan(project.variant.text).places
+        record["motion"] = made.told() | {"givens": [g | slider(project.variant, places, g["name"]) for g in made.givens]}
         computed = made.programs["all"].source.results
         for sheet in record["sheets"]:
             sheet["live"] = hung(record, sheet, computed)
@@ -114,7 +114,8 @@ def _written(record: Mapping[str, Any], made: MotionProgram | None) -> str:
         "style": _text("page.css"), "font": b64encode(template("fonts/TMMSheetsB.ttf").read_bytes()).decode(),
         "record": b64encode(packed).decode(),
         "programs": f"{{\n{programs}\n}}".replace("</", "<\\/"),
-        "modules": "\n".join(_text(f"{name}.js") for name in MODULES),
+        "modules": re.sub(r"(?m)^(import .*\n|export )", "", "\n".join(
+            _text(f"{name}.js") for name in ("../page/dom", "../page/zoom", *MODULES))),
     }  # fmt: skip
     return re.sub(r"<!--(\w+)-->", lambda m: parts[m[1]], _text("page.html"))
 
@@ -128,16 +129,20 @@ WIDEST = 4.0
 HALVINGS = 7
 
 
-def slider(variant: Variant, lines: Mapping[KeyPath, int], name: str) -> dict[str, Any]:
-    """Line of a given number, its unit with the factor to SI, and limits of what the schema takes, SI; nothing of one left out.
+def slider(variant: Variant, places: Mapping[KeyPath, tuple[int, int]], name: str) -> dict[str, Any]:
+    """Places in the file of a given number, its unit with the factor to SI, and limits of what the schema takes, SI.
 
-    ``low`` and ``high`` are told where there are any.
+    Nothing of one that is left out of the file. A point has two places, a table that of the last number of each row; ``low`` and
+    ``high`` are told where there are any.
     """
     path = edited_text.key_path(name)
-    if path not in lines:
+    if path not in places:
         return {}
-    told: dict[str, Any] = {"line": lines[path]}
     written = edited_text.at(variant.data, name)
+    rows = [(inner, row) for inner, row in (((), written), *nodes(written)) if isinstance(row, list)]
+    ends = [(*path, *inner, n) for inner, row in rows for n, last in enumerate(row)
+            if not isinstance(last, list) and (not inner or n == len(row) - 1)]
+    told: dict[str, Any] = {"places": [places[end] for end in ends or [path]]}
     number, unit = units.split(written[0] if isinstance(written, list) and written else written)
     factor = units.si(f"1 {unit}") if unit else 1.0
     if not number or not factor:
@@ -192,6 +197,7 @@ def page_words() -> dict[str, str]:
         "from it follow": tr("From it follow"),
         "gap": tr("gap"),
         "given": tr("given"),
+        "here {mu}": tr("here {mu}"),
         "how to": tr("How the sheet was drawn"),
         "in motion": tr("In motion"),
         "keys": tr("Keys"),
@@ -215,6 +221,7 @@ def page_words() -> dict[str, str]:
         "step back": tr("Step back"),
         "steps": tr("Steps"),
         "the whole sheet": tr("The whole sheet"),
+        "this card large": tr("This card large, or as the others"),
         "turn the crank": tr("In motion: turn the crank, change lengths and masses; the plans follow."),
         "turn the crank on the sheet": tr("Turn the crank: markers follow on the diagrams"),
         "undo": tr("Undo"),
