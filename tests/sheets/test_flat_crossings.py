@@ -308,8 +308,8 @@ def test_check_tells(capsys):
     told = capsys.readouterr()
     assert told.out == f"{NEAR}: OK\n"
     assert told.err == (
-        f"{NEAR}: positions 5–7: point C can be drawn no better than 2.5 mm, its lines cross under 13.2 deg "
-        "at position 6; position 4 is better (0.6 mm)\n"
+        f"{NEAR}: At positions 5–7 the arcs at point C cannot be drawn better than to 2.5 mm: at position 6 the lines meet at 13°; "
+        "for the force analysis take position 4 (0.6 mm)\n"
     )  # fmt: skip
     assert run(["check", "lugansk/shaper"]) == 0
     assert capsys.readouterr().err == ""

@@ -172,12 +172,11 @@ def worked_out(line):
 def test_tables_over_positions_hold_what_equilibrium_and_kinematics_demand(name):
     """A pair stands in the table once; the accelerations are the second differences of the points' positions."""
     p = Project(read(name))
-    heads = [head for head, _ in given_position._reactions(p)[1]]
+    heads = [head for head, _ in given_position.of_pairs(p)]
     assert len(heads) == len({frozenset(re.findall(r"\d", head)) for head in heads}) == len(p.mechanism.pairs)
     h = 1e-4 / abs(p.mechanism.crank.speed)
-    _, columns = given_position._accelerations(p)
     turned = np.asarray(p.cycle.turned)
-    for head, values in columns:
+    for head, values in given_position.of_points_and_links(p):
         if head.startswith("a_"):
             at = [np.asarray(p.study_at(turned + step * 1e-4, p.cycle.labels).positions.points[head[3:-1]].value)
                   for step in (-1, 0, 1)]

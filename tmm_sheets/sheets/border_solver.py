@@ -13,6 +13,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from itertools import pairwise
 from math import floor, inf, log10
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -336,6 +337,12 @@ def reached(size: float, floor: float) -> float:
 def leaf(box: Box, need: Need, share: float = 1.0) -> BorderNode:
     """Node of a need that counts for a share of its box."""
     return BorderNode(need, area=share * box.width * box.height)
+
+
+def stepped(view: ViewPlace, least: tuple[float, float], drawn: Callable[[int, int], float], share: float = 1.0) -> BorderNode:
+    """Node of a view that draws on so much of a place, whole mm, not below ``least``: with standard scales only steps count."""
+    known = cache(drawn)
+    return leaf(view.box, Need(least=least, drawn=lambda w, h: max(known(int(w), int(h)), 1.0)), share)
 
 
 def rows(project: Project, view: ViewPlace, count: int, head: float, row: tuple[float, float],

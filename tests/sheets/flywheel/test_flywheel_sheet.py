@@ -21,7 +21,7 @@ from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.wheel_methods import flywheel
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.components import graphs
+from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.flywheel.flywheel import apart, constant_moment, force_graph
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.sheets.views import arrangement, function
@@ -291,7 +291,7 @@ def test_a_table_of_many_positions_has_two_rows_of_them(columns, parts):
     """Numbers that have no room beside one another go on below, under the numbers of their positions."""
     canvas = Canvas()
     rows = [["No.", *map(str, range(columns))], ["A", *(f"−{1000 + k}" for k in range(columns))]]
-    graphs.table(canvas, Box(0, 0, 190, 40), "Works", rows)
+    listed.table(canvas, Box(0, 0, 190, 30), rows)
     said = [mark for mark in canvas.marks if isinstance(mark, Text)]
     assert sum(mark.text == "No." for mark in said) == parts
     assert len({round(mark.at.imag, 3) for mark in said if mark.text.startswith("−1")}) == parts
@@ -300,9 +300,8 @@ def test_a_table_of_many_positions_has_two_rows_of_them(columns, parts):
 
 def test_what_the_work_is_off_by_is_said_outside_a_graph_that_is_full():
     """It was left out where the error was the worst."""
-    canvas = Canvas()
-    full = np.linspace(0, 100, 200)[:, None] + 1j * np.linspace(0, 40, 80)
-    assert not graphs.note(canvas, Box(0.0, 0.0, 100.0, 40.0), ["A(24) = 84.08 J"], [full])
-    assert not canvas.marks
-    assert graphs.note(canvas, Box(0.0, 0.0, 100.0, 40.0), ["A(24) = 84.08 J"], [np.linspace(0, 100, 200) + 0j])
-    assert canvas.marks
+    canvas = draw(project(Shaper()), "works")
+    said = next(m for m in canvas.marks if isinstance(m, Text) and "середин" in m.text)
+    assert "по площади" in "".join(m.text for m in canvas.marks if isinstance(m, Text) and m.at.imag == said.at.imag)
+    drawn = np.concatenate([flat(m) for m in canvas.marks if isinstance(m, Polyline)])
+    assert text_box(said).imag.min() > drawn.imag.max() + 1.0

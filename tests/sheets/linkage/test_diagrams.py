@@ -115,7 +115,8 @@ def test_graphs_stand_beside_each_other_where_only_so_they_reach_their_floors(bo
 def test_a_graph_that_is_offered_is_as_high_as_its_floor_asks():
     p = Project(read("screen"))
     column = diagrams.balancing_graph(p)
-    ((width, height),) = cycle_graphs.sizes(p, column, [(170.0, 20.0)])
+    offered = cycle_graphs.CycleView(lambda p: "", lambda p, options: [column], wanted=((170.0, 20.0),))
+    ((width, height),) = offered.sizes(p, Canvas(), {})
     ((q, _, mu),) = cycle_graphs.placed(p, [column], Box(0, 0, width, height))
     assert q.extent / mu >= 40.0
 

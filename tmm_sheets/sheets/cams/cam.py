@@ -17,8 +17,9 @@ from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
 from tmm_sheets.drawing.lettering import fitted, letter, size_for
 from tmm_sheets.drawing.marks import Box, Points
-from tmm_sheets.drawing.text_layout import needs, parted, widened
+from tmm_sheets.drawing.text_layout import needs
 from tmm_sheets.numbers import fixed, number
+from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.player import OVER, PlayerStage, placed, play
 from tmm_sheets.words import tr
 
@@ -405,14 +406,7 @@ def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         if sum(needs(rows, 2.5)) <= box.width:
             break
     kept = [0, *(k + 1 for k in distinct(cam.motion.law.labels, turned))]
-    rows = [[cells[k] for k in kept] for cells in rows]
-    first, parts = 32.0 if len(second) > 1 else 26.0, parted(rows, box.width, box.height)
-    row, top = min(box.height / (len(rows) * len(parts)), 8.0), box.y1
-    for part in parts:
-        width = (box.width - first) / (len(parts[0][0]) - 1)
-        widths = widened([first, *[width] * (len(part[0]) - 1)], part, 2.5)
-        canvas.table(complex(box.x0, top), widths, part, row, 2.5)
-        top -= row * len(part)
+    listed.table(canvas, box, [[cells[k] for k in kept] for cells in rows], 8.0)
 
 
 def _second_derivative(cam: Cam) -> dict[str, Any]:

@@ -17,10 +17,10 @@ from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
-from tmm_sheets.drawing.text_layout import LEAST, needs, size_in, widened
+from tmm_sheets.drawing.text_layout import LEAST, needs
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.cams.cam import ANGLE, distinct, in_degrees, in_mm, lines_of_text, raised
-from tmm_sheets.sheets.components import clear_dimensions
+from tmm_sheets.sheets.components import clear_dimensions, listed
 from tmm_sheets.sheets.player import PlayerStage, placed, play, ratio, standard
 from tmm_sheets.words import tr
 
@@ -284,34 +284,20 @@ def _given(cam: Any, letter_of: str = ANGLE) -> list[list[str]]:
     return rows
 
 
-def radii_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the table of radii can do with, mm."""
-    rows = len(_radii(project.cam))
-    return [(width, 11.0 + row * rows) for width, row in ((112.0, 8.0), (96.0, 7.0), (84.0, 6.4), (76.0, 5.6), (70.0, 4.6))]
-
-
-def radii(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Radii of the centre profile and of the profile at the numbered positions."""
-    cam: Cam = project.cam
-    rows = _radii(cam)
-    canvas.of = cam.inversion.plan.name
-    inside = canvas.title(box.inset(0, 0, 0, 2), tr("Radii of the profile"))
-    row = min(inside.height / len(rows), 8.0)
-    height = size_in(row)
-    widths = widened([0.16 * box.width, *[0.84 * box.width / (len(rows[0]) - 1)] * (len(rows[0]) - 1)], rows, height)
-    canvas.table(complex(box.x0, inside.y1), widths, rows, row, height)
-
-
-def _radii(cam: Cam) -> list[list[str]]:
+def _radii(project: Project, options: dict[str, Any]) -> tuple[str, list[list[str]]]:
     """Cam angle and radii, mm, from the drawn points."""
+    cam: Cam = project.cam
     inv = cam.inversion
-    columns = [(in_degrees("φ"), np.degrees(inv.phi), 2)]
+    columns = [(in_degrees("φ"), np.degrees(inv.phi))]
     if "roller" in cam.traits:
-        columns.append((in_mm("|OB|"), inv.plan.length(inv.plan["O"], inv.centres).value * 1e3, 2))
-    columns.append((in_mm("|OF|"), inv.plan.length(inv.plan["O"], inv.plan["F"]).value * 1e3, 2))
-    rows = [[tr("No."), *(head for head, _, _ in columns)]]
-    return rows + [[inv.plan.labels[k], *(fixed(float(values[k]), places) for _, values, places in columns)]
-                   for k in distinct(inv.plan.labels, inv.phi)]
+        columns.append((in_mm("|OB|"), inv.plan.length(inv.plan["O"], inv.centres).value * 1e3))
+    columns.append((in_mm("|OF|"), inv.plan.length(inv.plan["O"], inv.plan["F"]).value * 1e3))
+    return tr("Radii of the profile"), [[tr("No."), *(head for head, _ in columns)], *(
+        [inv.plan.labels[k], *(fixed(float(values[k]), 2) for _, values in columns)] for k in distinct(inv.plan.labels, inv.phi))]
+
+
+radii = listed.Upright(_radii)
+"""Radii of the centre profile and of the profile at the numbered positions."""
 
 
 def _circles(s: PlayerStage, picture: _ProfilePicture) -> None:

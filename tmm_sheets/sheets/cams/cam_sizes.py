@@ -12,7 +12,7 @@ import numpy as np
 from tmm_sheets.construction.readable import CURVE
 from tmm_sheets.construction.scale import STANDARD, fitting
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.sheets.border_solver import BorderNode, Need, leaf, reached
+from tmm_sheets.sheets.border_solver import BorderNode, Need, leaf, reached, stepped
 from tmm_sheets.sheets.cams import cam as cam_views
 from tmm_sheets.sheets.cams import cam_profile, cam_zone
 from tmm_sheets.sheets.player import standard
@@ -65,13 +65,11 @@ def zone_of_tappet(project: Project, view: ViewPlace) -> BorderNode | None:
     cam = cast("TappetCam", project.cam)  # others have no such view
     rays = bool(view.options.get("rays"))
 
-    @cache
-    def in_place(width: int, height: int) -> float:
+    def drawn(width: int, height: int) -> float:
         stroke = cam_zone.stroke_in(cam, rays, width, height)
         return 0.6 * width * height * min(stroke / NUMBERED, 1.0) * reached(stroke, CROWDED)
 
-    need = Need(least=(0.88 * view.box.width, 0.8 * view.box.height), drawn=lambda w, h: in_place(int(w), int(h)))
-    return leaf(view.box, need)
+    return stepped(view, (0.88 * view.box.width, 0.8 * view.box.height), drawn)
 
 
 def pressure(project: Project, view: ViewPlace) -> BorderNode | None:
@@ -92,8 +90,7 @@ def spring(project: Project, view: ViewPlace) -> BorderNode | None:
 
 def profile(project: Project, view: ViewPlace) -> BorderNode | None:
     """The profile at a standard scale, with its table where that leaves the scale."""
-    in_place = _profile_area(project.cam, cam_profile.table_size(project.cam))
-    return leaf(view.box, Need(least=(180.0, 180.0), drawn=lambda w, h: in_place(int(w), int(h))))
+    return stepped(view, (180.0, 180.0), _profile_area(project.cam, cam_profile.table_size(project.cam)))
 
 
 @lru_cache(maxsize=4)
@@ -125,12 +122,11 @@ def roller(project: Project, view: ViewPlace) -> BorderNode | None:
     w, h = cam_profile.roller_extent(cam)
     left, below, right, above = cam_profile.ROLLER
 
-    @cache
-    def in_place(width: int, height: int) -> float:
+    def drawn(width: int, height: int) -> float:
         try:
             mu = standard((w, width - left - right), (h, height - below - above)).mu
         except CannotBuild:
             return 1.0
         return (w / mu + left + right) * (h / mu + below + above)
 
-    return leaf(view.box, Need(least=(cam_profile.roller_width(cam), 104.0), drawn=lambda w, h: in_place(int(w), int(h))), 0.5)
+    return stepped(view, (cam_profile.roller_width(cam), 104.0), drawn, 0.5)

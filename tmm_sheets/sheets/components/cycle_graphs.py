@@ -1,25 +1,26 @@
 """Graphs over the cycle of the crank: one, or several in columns, as high as they are read at least.
 
-What they need of their place is told before anything is drawn (:func:`need`, :func:`sizes`); :func:`placed` chooses for a place in
+What they need of their place is told before anything is drawn (:class:`CycleView`); :func:`placed` chooses for a place in
 how many columns they stand and their scale factors: first all reach their floors, then the lowest grows as long as there is room.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.readable import CURVE
 from tmm_sheets.construction.scale import Scale, coarser, finer, fit, reach
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import enough
 from tmm_sheets.remarks import Remark
-from tmm_sheets.sheets.border_solver import Measured, Need, risen
+from tmm_sheets.sheets.border_solver import BorderNode, Measured, Need, leaf, risen
 from tmm_sheets.sheets.components import graphs
 from tmm_sheets.sheets.player import PlanFrame, pick
 from tmm_sheets.words import marked, tr
@@ -27,7 +28,9 @@ from tmm_sheets.words import marked, tr
 if TYPE_CHECKING:
     from tmm_sheets.drawing.canvas import Canvas
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.views import ViewPlace
 
+Options = dict[str, Any]
 LEFT, RIGHT = 20.0, 12.0
 """Room beside an angle axis for the sign of the ordinate and for the arrow, mm."""
 ABOVE, BELOW = 10.0, 6.0
@@ -178,12 +181,6 @@ def need(project: Project, columns: Sequence[Column]) -> Need:
                 drawn=lambda w, h: 0.75 * w * h, scale=lacking, coarsest=1.0)
 
 
-def sizes(project: Project, column: Column, wanted: Sequence[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
-    """Sizes for a column that is offered, mm: those wanted, where a graph is below its floor made higher."""
-    high = TITLE + _least_height(project, column)
-    return tuple(dict.fromkeys((width, max(height, high)) for width, height in wanted if width >= _least_width(project)))
-
-
 def placed(project: Project, columns: Sequence[Column], box: Box) -> list[GraphPlace]:
     """Places and scale factors of columns of graphs in a box with their title: the first shape that reaches all floors.
 
@@ -242,8 +239,45 @@ def low(project: Project, columns: Sequence[Column], box: Box) -> Iterator[Measu
         yield Measured(what, q.extent / mu, q.floor, hint)
 
 
+@dataclass(frozen=True)
+class CycleView:
+    """A view of ``columns`` of graphs under a ``title``, none for nothing to show.
+
+    Where it cannot be drawn ``columns`` raises CannotBuild. It counts for a ``share`` of its place in an arrangement; offered it
+    has one of the sizes ``wanted``, mm.
+    """
+
+    title: Callable[[Project], str]
+    columns: Callable[[Project, Options], Sequence[Column]]
+    share: float = 1.0
+    wanted: tuple[tuple[float, float], ...] = ()
+
+    def place(self, project: Project, view: ViewPlace) -> BorderNode | None:
+        """What the graphs need of their place."""
+        columns = self.columns(project, view.options)
+        return leaf(view.box, need(project, columns), self.share) if columns else None
+
+    def sizes(self, project: Project, canvas: Canvas, options: Options) -> tuple[tuple[float, float], ...]:
+        """Sizes for a single column that is offered, mm: those wanted, where a graph is below its floor made higher."""
+        try:
+            columns = self.columns(project, options)
+        except CannotBuild:
+            return ()
+        high, wide = TITLE + sum(_least_height(project, column) for column in columns), _least_width(project)
+        return tuple(dict.fromkeys((w, max(h, high)) for w, h in self.wanted if w >= wide)) if columns else ()
+
+    def low(self, project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
+        """How high the graphs come out in a place; none whose scale factors the project file asks for."""
+        return low(project, self.columns(project, view.options), view.box)
+
+    def __call__(self, project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+        """Draw them."""
+        if columns := self.columns(project, options):
+            draw(project, canvas, box, self.title(project), columns)
+
+
 def draw(project: Project, canvas: Canvas, box: Box, title: str, columns: Sequence[Column]) -> None:
-    """Columns of graphs under their title; of several each is a part of the view, with a name of its own."""
+    """Columns of graphs under their title."""
     places = placed(project, columns, box)
     canvas.title(box, title, str(angle_axis(project, places[0].box)[0]))
     for place in places:

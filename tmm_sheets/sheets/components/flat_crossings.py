@@ -8,6 +8,7 @@ crossing tells, nothing else is computed.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import asin, degrees
@@ -22,7 +23,7 @@ from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import composition
 from tmm_sheets.sheets.components import graphs
 from tmm_sheets.sheets.linkage import kinematic_frames
-from tmm_sheets.words import marked, tell, tell_n, tr
+from tmm_sheets.words import marked, on_paper, reader, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.box import Box
@@ -272,18 +273,6 @@ def lines(project: Project) -> Iterator[str]:
     if "mu_l" not in kept:  # no sheet draws it
         return
     for flat in find(project, plan, places, {"positions": kept["mu_l"][0]}):
-        numbers = {"at": _listed(project, flat.positions), "name": flat.step.name, "mm": flat.mm, "worst": labels[flat.worst],
-                   "angle": degrees(flat.angle)}
-        n = min(len(flat.positions), 2)
-        what = tell_n("position {at}: point {name} can not be drawn, its lines cross under {angle:.1f} deg at position "
-                      "{worst}",
-                      "positions {at}: point {name} can not be drawn, its lines cross under {angle:.1f} deg at position "
-                      "{worst}", n) \
-            if flat.mm is None else \
-            tell_n("position {at}: point {name} can be drawn no better than {mm:.1f} mm, its lines cross under {angle:.1f} deg at "
-                   "position {worst}",
-                   "positions {at}: point {name} can be drawn no better than {mm:.1f} mm, its lines cross under {angle:.1f} deg at "
-                   "position {worst}", n)
-        instead = tell("no position of this stroke is better") if flat.better is None else \
-            tell("position {better} is better ({mm:.1f} mm)").format(better=labels[flat.better], mm=flat.better_mm)
-        yield f"{what.format(**numbers)}; {instead}"
+        with on_paper(reader()):
+            told = re.sub("[_{}]", "", said(project, flat))
+        yield told

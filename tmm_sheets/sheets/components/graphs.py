@@ -1,21 +1,20 @@
-"""Diagrams over an axis on a sheet: axes, headings, numbers of positions, and the tables beside them."""
+"""Diagrams over an axis on a sheet: axes, headings, numbers of positions, cells of the tables beside them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import floor, log10
+from math import floor, inf, log10
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tmm_sheets.drawing.canvas import SMALLEST, Canvas
-from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box, PlacedFrame, Points
 from tmm_sheets.drawing.paper import A1
-from tmm_sheets.drawing.text_layout import parted, size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.words import tell, tr
@@ -49,20 +48,12 @@ def one(values: ArrayLike) -> float:
     return float(np.asarray(values).reshape(-1)[0])
 
 
-def check_room(box: Box, top: float, view: str) -> None:
-    """Refuse a place that ends below what has to be drawn."""
-    if top > box.y1 + 0.5:
-        raise CannotBuild(
-            tell("view {view} needs {lack:.0f} mm more height than its place has").format(view=view, lack=top - box.y1),
-            tell("make its box in the arrangement larger"))
-
-
-def check_width(box: Box, right: float, view: str) -> None:
-    """Refuse a place that ends to the left of what has to be drawn."""
-    if right > box.x1 + 0.5:
-        raise CannotBuild(
-            tell("view {view} needs {lack:.0f} mm more width than its place has").format(view=view, lack=right - box.x1),
-            tell("make its box in the arrangement larger"))
+def check_room(box: Box, view: str, top: float = -inf, right: float = -inf) -> None:
+    """Refuse a place that ends below or to the left of what has to be drawn."""
+    for lack, said in ((top - box.y1, tell("view {view} needs {lack:.0f} mm more height than its place has")),
+                       (right - box.x1, tell("view {view} needs {lack:.0f} mm more width than its place has"))):
+        if lack > 0.5:
+            raise CannotBuild(said.format(view=view, lack=lack), tell("make its box in the arrangement larger"))
 
 
 def heading(canvas: Canvas, box: Box, options: Options, title: str, factor: str, under: str = "") -> None:
@@ -81,7 +72,8 @@ def heading(canvas: Canvas, box: Box, options: Options, title: str, factor: str,
     canvas.put(name, complex(start, box.y1 - 6.0))
     canvas.text(complex(start + name.width + 8, box.y1 - 6.0), factor, size)
     if under:
-        canvas.text(complex((x0 + box.x1) / 2, box.y1 - 12.5), under, 3.5, "centre")
+        middle = (options["axis"] + box.x1) / 2
+        canvas.text(complex(middle, box.y1 - 12.5), under, size_for([under], box.x1 - options["axis"] - 4.0, 3.5), "centre")
 
 
 def begin(canvas: Canvas, box: Box, options: Options, heads: tuple[str, ...], low: float, high: float, below: float,
@@ -92,7 +84,7 @@ def begin(canvas: Canvas, box: Box, options: Options, heads: tuple[str, ...], lo
     """
     heading(canvas, box, options, *heads)
     g = Graph(complex(options["axis"], box.y0 + below - low))
-    check_room(box, g.origin.imag + high + HEAD, view)
+    check_room(box, view, g.origin.imag + high + HEAD)
     return g
 
 
@@ -156,57 +148,3 @@ def row(name: str, values: Sequence[float] | Floats) -> list[str]:
         name, values, order = name.replace(",", f"·10^{{{power}}},", 1), np.asarray(values) * 10.0**power, order + power
     decimals = max(0, (3 if len(values) <= 13 else 2) - order)
     return [name, *(fixed(float(v), decimals) for v in values)]
-
-
-def table(canvas: Canvas, box: Box, title: str, rows: list[list[str]]) -> None:
-    """Table with the quantities in the first column, under its title, as large as its place lets it be.
-
-    Where the numbers of all positions have no room in one row, there are more, one under the other, each with its numbers.
-    """
-    left = canvas.title(box.inset(0, 0, 0, 2), title)
-    parts = parted(rows, box.width, left.height)
-    first = max(letter(row[0], 3.5).width for row in rows) + 3.0
-    high = min(left.height / sum(map(len, parts)), 11.0)
-    top = left.y1
-    for part in parts:
-        columns = len(part[0]) - 1
-        width = (box.width - first) / (len(parts[0][0]) - 1)
-        wide = max(letter(cell, 3.5).width for line in part for cell in line[1:]) <= width - 1
-        height = size_in(high) if wide else 2.5
-        canvas.table(complex(box.x0, top), widened([first, *[width] * columns], part, height), part, high, height)
-        top -= high * len(part)
-
-
-def table_in(canvas: Canvas, left: Box, rows: Sequence[Sequence[str]], tallest: float, widths: Sequence[float] = (),
-             under: float = 0.0, header: int = 1) -> Box:
-    """Table from the top of a place down, as high as it lets it be with ``under`` mm left free, rows no higher than ``tallest``.
-
-    Columns are of equal widths unless told, but for the first of which there is told one; all are wide enough for their texts.
-    """
-    row = min((left.height - under) / len(rows), tallest)
-    count, height = len(rows[0]), size_in(row)
-    if len(widths) < count:
-        widths = [*widths, *[(left.width - sum(widths)) / (count - len(widths))] * (count - len(widths))]
-    return canvas.table(complex(left.x0, left.y1), widened(widths, rows, height), rows, row, height, header)
-
-
-def note(canvas: Canvas, room: Box, lines: Sequence[str], ink: Sequence[Points]) -> bool:
-    """Short lines of text in the part of a graph that its curves (points close together) leave free the widest.
-
-    Numbers and letters at the curves need some room as well; smaller letters where there is little. False where there is none.
-    """
-    points = np.concatenate([np.ravel(z) for z in ink])
-    for height in (3.5, 2.5):
-        width, high = max(letter(line, height).width for line in lines), len(lines) * 1.7 * height
-        x, y = np.arange(room.x0 + 2.0, room.x1 - width, 4.0)[:, None], np.arange(room.y0, room.y1 - high, 2.0)[:, None]
-        if not x.size or not y.size:
-            continue
-        beside = np.maximum(np.maximum(x - points.real, points.real - x - width), 0.0)**2
-        apart = np.maximum(np.maximum(y - points.imag, points.imag - y - high), 0.0)**2
-        free = np.sqrt([(beside + above).min(axis=1) for above in apart])
-        row, column = np.unravel_index(np.argmax(free), free.shape)
-        if free[row, column] >= 6.0:
-            for i, line in enumerate(lines):
-                canvas.text(complex(x[column, 0], y[row, 0]) + 1j * (high - (i + 1) * 1.7 * height + 0.35 * height), line, height)
-            return True
-    return False

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import letter, size_for
+from tmm_sheets.drawing.lettering import broken, letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_boxes import CLEAR
-from tmm_sheets.drawing.text_layout import GAP, LEADING, LEAST, TOGETHER, Heading, heading, needs, size_in, widened
+from tmm_sheets.drawing.text_layout import GAP, LEADING, LEAST, TOGETHER, Heading, heading, needs, parted, size_in, widened
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -51,11 +52,17 @@ class Lines:
 
     def __call__(self, project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
         """Draw it."""
-        lines = list(self.lines(project, canvas))
-        left = canvas.title(box, tr(self.title), spare=box.height - 14.0 - HEIGHTS[-1][2] * len(lines))
-        height = size_for(lines, box.width - 3.0, 5.0)
-        step = min((left.y1 - box.y0) / len(lines), 12.0 if height > 3.5 else 10.0)
-        canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
+        draw_lines(canvas, box, tr(self.title), self.lines(project, canvas))
+
+
+def draw_lines(canvas: Canvas, box: Box, title: str, said: Iterable[str]) -> None:
+    """Lines under their title with the largest letters that have room in a place; those too long for it are broken."""
+    lines = [part for line in said for part in broken(line, box.width - 3.0, 3.5)]
+    left = canvas.title(box, title, spare=box.height - 14.0 - HEIGHTS[-1][2] * len(lines))
+    room = (left.y1 - box.y0) / len(lines)
+    height = size_for(lines, box.width - 3.0, 5.0 if room > HEIGHTS[-1][2] else 3.5)
+    step = min(room, 12.0 if height > 3.5 else 10.0)
+    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
 
 
 class Form(NamedTuple):
@@ -139,6 +146,38 @@ class Table:
 
 Rows = Sequence[Sequence[str]]
 
+
+def table(canvas: Canvas, left: Box, rows: list[list[str]], tallest: float = 11.0) -> None:
+    """Table with the quantities in the first column, as large as its place lets it be, rows no higher than ``tallest``, mm.
+
+    Where the numbers of all positions have no room in one row, there are more, one under the other, each with its numbers.
+    """
+    parts = parted(rows, left.width, left.height)
+    first = max(letter(row[0], 3.5).width for row in rows) + 3.0
+    high = min(left.height / sum(map(len, parts)), tallest)
+    top = left.y1
+    for part in parts:
+        columns = len(part[0]) - 1
+        width = (left.width - first) / (len(parts[0][0]) - 1)
+        wide = max(letter(cell, 3.5).width for line in part for cell in line[1:]) <= width - 1
+        height = size_in(high) if wide else 2.5
+        canvas.table(complex(left.x0, top), widened([first, *[width] * columns], part, height), part, high, height)
+        top -= high * len(part)
+
+
+def table_in(canvas: Canvas, left: Box, rows: Sequence[Sequence[str]], tallest: float, widths: Sequence[float] = (),
+             under: float = 0.0, header: int = 1) -> Box:
+    """Table from the top of a place down, as high as it lets it be with ``under`` mm left free, rows no higher than ``tallest``.
+
+    Columns are of equal widths unless told, but for the first of which there is told one; all are wide enough for their texts.
+    """
+    row = min((left.height - under) / len(rows), tallest)
+    count, height = len(rows[0]), size_in(row)
+    if len(widths) < count:
+        widths = [*widths, *[(left.width - sum(widths)) / (count - len(widths))] * (count - len(widths))]
+    return canvas.table(complex(left.x0, left.y1), widened(widths, rows, height), rows, row, height, header)
+
+
 TRIED = (7.0, 3.5, 4.0), (6.4, 3.5, 2.0), (7.0, 2.5, 2.5), (5.6, 2.5, 2.0), (4.6, 2.5, 2.0)
 """Heights of rows and of their letters, and what a column is wider than its widest text, mm: the largest first."""
 UNDER = 3.0
@@ -147,7 +186,7 @@ LINES = 3
 """Most lines of a title: below them it is no longer read as one."""
 
 
-def upright_sizes(title: str, rows: Rows, widest: float = float("inf")) -> list[tuple[float, float]]:
+def upright_sizes(title: str, rows: Rows, widest: float = inf) -> list[tuple[float, float]]:
     """Widths and heights that a table with these cells, heads included, can do with, mm, the largest first.
 
     None is wider than ``widest``; each is at least as wide as the longest word of the title.
@@ -157,17 +196,41 @@ def upright_sizes(title: str, rows: Rows, widest: float = float("inf")) -> list[
     return [(width, _head(title, width)[1] + row * len(rows)) for width, row in found if width <= widest]
 
 
-def draw_upright(canvas: Canvas, box: Box, title: str, rows: Rows, header: int = 1) -> None:
-    """A table and its title, as large as the place lets them be; the first ``header`` of its rows are heads."""
+def draw_upright(canvas: Canvas, box: Box, title: str, rows: Rows) -> None:
+    """A table and its title, as large as the place lets them be; its first row are heads, units without a number may follow.
+
+    Nothing without a column beside the first.
+    """
+    if len(rows[0]) < 2:
+        return
     canvas.begin(box, title.replace(TOGETHER, " "))
     (lines, height, wide), head = _head(title, box.width)
     for k, line in enumerate(lines):
-        canvas.text(complex(box.centre.real, box.y1 - LEADING * (k + 1) + 1.0), line, height, "centre", wide=wide)
+        canvas.text(complex(box.centre.real, box.y1 - 5.0 - LEADING * k), line, height, "centre", wide=wide)
     row = min((box.height - head) / len(rows), TRIED[0][0])
     letters = size_in(row) if sum(needs(rows, size_in(row))) <= box.width + 1e-6 else 2.5
     first = needs([[line[0]] for line in rows], letters)[0]
     widths = [first, *[(box.width - first) / (len(rows[0]) - 1)] * (len(rows[0]) - 1)]
-    canvas.table(complex(box.x0, box.y1 - head), widened(widths, rows, letters), rows, row, letters, header)
+    canvas.table(complex(box.x0, box.y1 - head), widened(widths, rows, letters), rows, row, letters, 1 if rows[1][0] else 2)
+
+
+@dataclass(frozen=True)
+class Upright:
+    """A view of such a table: ``of`` gives its title and its cells.
+
+    It is offered with a column of numbers at least, no wider than the option ``widest``.
+    """
+
+    of: Callable[[Project, dict[str, Any]], tuple[str, Rows]]
+
+    def sizes(self, project: Project, canvas: Canvas, options: dict[str, Any]) -> Sizes:
+        """Places that it can do with."""
+        title, rows = self.of(project, options)
+        return upright_sizes(title, rows, options.get("widest", inf)) if len(rows[0]) > 1 else []
+
+    def __call__(self, project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+        """Draw it."""
+        draw_upright(canvas, box, *self.of(project, options))
 
 
 def left_edge(options: dict[str, Any]) -> float | None:
@@ -179,4 +242,4 @@ def left_edge(options: dict[str, Any]) -> float | None:
 def _head(title: str, width: float) -> tuple[Heading, float]:
     """A title over a table of a width, mm, and the room it takes."""
     found = heading(title, width, 5.0, LINES)
-    return found, LEADING * len(found.lines) + UNDER - 1.0
+    return found, 5.0 + LEADING * (len(found.lines) - 1) + UNDER

@@ -12,24 +12,22 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import degrees, pi
-from operator import mul, truediv
 from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from tmm_sheets.construction.equation import Quantity, digits_for, equation, of_step
+from tmm_sheets.construction.equation import Quantity, digits_for, of_step
 from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
-from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.lettering import letter, size_for
-from tmm_sheets.drawing.marks import Box, Points, Text
+from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.placing import PointNumbers
-from tmm_sheets.drawing.text_layout import TOGETHER, wrapped
+from tmm_sheets.drawing.text_layout import LEADING, TOGETHER, wrapped
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import decimals_for, enough, fixed, is_zero, number
 from tmm_sheets.sheets.border_solver import GAP
-from tmm_sheets.sheets.components import graphs, listed
+from tmm_sheets.sheets.components import clear_dimensions, graphs, listed
 from tmm_sheets.sheets.player import PlayerStage, play, ratio, stage, standard, together
 from tmm_sheets.words import tell, tr, tr_in
 
@@ -128,9 +126,9 @@ def stacked(project: Project, canvas: Canvas, box: Box, options: Options, name: 
     """Graphs one under another, each as high as it is, the room left over between them; ``apart`` each is a view of its own."""
     over = graphs.OVER + graphs.HEAD
     spare = (box.height - sum(height + below + over for _, height, below in views)) / (len(views) - 1)
-    graphs.check_room(box, box.y1 - min(spare, 0.0) * (len(views) - 1), name)
     fw: Flywheel = project.flywheel
-    graphs.check_width(box, options["axis"] + fw.scales.angle.mm(fw.reduced.period) + graphs.OVER, name)
+    graphs.check_room(box, name, box.y1 - min(spare, 0.0) * (len(views) - 1),
+                      options["axis"] + fw.scales.angle.mm(fw.reduced.period) + graphs.OVER)
     top = box.y1
     for view, height, below in views:
         low = top - height - below - over
@@ -168,7 +166,7 @@ def force_graph(project: Project, canvas: Canvas, box: Box, options: Options) ->
             top = max(top, float(highest.imag))
             if len(names) > 1 and (highest.imag > 4.0 or line is max(acting[name], key=lambda some: float(some.imag.max()))):
                 canvas.label(g(highest), name, 1 + 0.3j, 3.5)
-    graphs.check_room(box, g.origin.imag + top, "flywheel.force_graph")
+    graphs.check_room(box, "flywheel.force_graph", g.origin.imag + top)
     ordinate = f"{names[0] if len(names) == 1 else letter_of}, {unit}"
     axes(fw, of, r.force_steps[0], g, (min(low, 0.0), top), ordinate, np.ones(len(fw.labels)))
     for k, x in enumerate(s.angle.mm(r.phi)):
@@ -319,23 +317,6 @@ def works(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     end = fw.driving_plan["K"].value
     curve = s.angle.mm(fw.samples) + 1j * fw.work_curve(fw.samples)
     low, high = min(0.0, end.imag, curve.imag.min()), max(0.0, end.imag, curve.imag.max())
-    g = graphs.begin(canvas, box, options, (tr("Graphs of work"), f"{s.work}"), low, high, 4.0, "flywheel.works")
-    canvas.of = fw.work_plan.name
-    of, drive = (stage(canvas, p, None, g.place()) for p in (fw.work_plan, fw.driving_plan))
-    of.curve("A(φ)", g(curve))
-    drive.line("K", g(0j), g(end), "curve", "curve")
-    play(of, fw.borders[1:])
-    uprights = []
-    for k, label in zip(fw.at_positions, fw.labels, strict=True):
-        x = ends[k].real
-        heights = (0.0, ends[k].imag, x * end.imag / end.real)
-        uprights.append(np.linspace(complex(x, min(heights)), complex(x, max(heights)), 50))
-        canvas.tracing("construction", fw.total_plan["ΣA"].path, label).line(g(uprights[-1][0]), g(uprights[-1][-1]), "thin")
-    axes(fw, of, "A(φ)", g, (low, high), tr("A, J"), np.zeros(len(fw.labels)))
-    k = len(curve) // 2
-    canvas.label(g(curve[k]), f"A_{varying}", -1 - 1j if curve[k].imag < 0 else -1 + 1j, height=5)
-    canvas.label(g(end / 2), f"A_{constant}", -1 + 1j if end.imag > 0 else -1 - 1j, height=5)
-    drive.letters("K", "K", 1j if end.imag > 0 else -1j)
     share = fixed(100 * fw.work_error, 2)
     # So many figures that both can be told apart.
     drawn, converged = graphs.column([float(fw.work[-1]), float(fw.work_converged[-1])], 4, least=1)
@@ -348,10 +329,22 @@ def works(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     if not nothing and abs(fw.work_error) >= FELT and (fw.given or fw.needed) and abs(fw.difference_percent) < 100:
         far = tr("δ by them: {difference} % from n → ∞") if fw.given else tr("J_{{f}} by them: {difference} % from n → ∞")
         note += (far.format(difference=f"{'+' if fw.difference_percent > 0 else ''}{fixed(fw.difference_percent, 2)}"),)
-    inside = Box(g.origin.real, g.origin.imag + low, g.origin.real + end.real, g.origin.imag + high)
-    ink = [g(z) for z in (curve, np.linspace(0, end, 50), np.linspace(0, end.real, 50) + 0j, *uprights[1:])]
-    if not graphs.note(canvas, inside, note, ink):
-        canvas.note(box, "; ".join((" ".join(note[:2]), *note[2:])))
+    heads = tr("Graphs of work"), f"{s.work}", "; ".join((" ".join(note[:2]), *note[2:]))
+    g = graphs.begin(canvas, box, options, heads, low, high, 4.0, "flywheel.works")
+    canvas.of = fw.work_plan.name
+    of, drive = (stage(canvas, p, None, g.place()) for p in (fw.work_plan, fw.driving_plan))
+    of.curve("A(φ)", g(curve))
+    drive.line("K", g(0j), g(end), "curve", "curve")
+    play(of, fw.borders[1:])
+    for k, label in zip(fw.at_positions, fw.labels, strict=True):
+        heights = 0.0, ends[k].imag, ends[k].real * end.imag / end.real
+        low_end, high_end = (g(complex(ends[k].real, of_all(heights))) for of_all in (min, max))
+        canvas.tracing("construction", fw.total_plan["ΣA"].path, label).line(low_end, high_end, "thin")
+    axes(fw, of, "A(φ)", g, (low, high), tr("A, J"), np.zeros(len(fw.labels)))
+    k = len(curve) // 2
+    canvas.label(g(curve[k]), f"A_{varying}", -1 - 1j if curve[k].imag < 0 else -1 + 1j, height=5)
+    canvas.label(g(end / 2), f"A_{constant}", -1 + 1j if end.imag > 0 else -1 - 1j, height=5)
+    drive.letters("K", "K", 1j if end.imag > 0 else -1j)
 
 
 def total_work(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
@@ -389,8 +382,7 @@ def inertia(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
     canvas.of = fw.inertia_plan.name
     g = _inertia_graph(fw, box, options)
     length = angle.mm(turn)
-    graphs.check_room(Box(box.x0, 0, box.x1, left.y1), g.origin.imag + 3, "flywheel.inertia")
-    graphs.check_room(Box(0, -g.origin.imag, 0, -box.y0), length - g.origin.imag, "flywheel.inertia")
+    graphs.check_room(left, "flywheel.inertia", max(g.origin.imag + 3, left.y1 + length - g.origin.imag + box.y0))
     phi = fw.samples[fw.samples <= turn * (1 + 1e-12)]
     curve = angle.mm(phi) + 1j * s.inertia.mm(fw.inertia(fw.samples)[:len(phi)])
     of = stage(canvas, fw.inertia_plan, None, g.place())
@@ -414,7 +406,7 @@ def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) ->
     """Energy-mass curve by projection from the graphs of dE and J, its two tangents and the segment ab."""
     fw = with_tangents(project)
     s, plan = fw.scales, fw.energy_mass_plan
-    scale = s.excess or s.energy
+    scale, first = s.excess or s.energy, len(canvas.marks)
     canvas.of = plan.name
     energy = _energy_graph(fw, Box(*options["energy"]), {"axis": options["energy_axis"]})
     turned = _inertia_graph(fw, Box(*options["inertia"]), options)
@@ -424,9 +416,9 @@ def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) ->
     cuts = np.unique(np.append(g(points).real, (g.origin.real, box.x1)))
     widest = int(np.argmax(np.diff(cuts)))
     gap = _for_title(Box(float(cuts[widest]), box.y0, float(cuts[widest + 1]), box.y1), g.origin.real, box.x1)
-    title = _narrow_title(canvas, gap, f"{s.energy}", f"{s.inertia}")
+    title = _beneath(canvas, canvas.title(gap, tr("Energy-mass diagram"), spare=LEADING), 5.0, s.energy, s.inertia)
     if scale is not s.energy:
-        title = _beneath(canvas, title, _enlarged(scale.mu / s.energy.mu))
+        title = _beneath(canvas, title, 3.5, _enlarged(scale.mu / s.energy.mu))
     curve = fw.energy_mass_curve(fw.samples)
     of = stage(canvas, plan, None, g.place())
     of.curve("points", g(curve))
@@ -476,7 +468,11 @@ def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) ->
     ends = sorted((plan["a"].value, plan["b"].value), key=lambda z: float(z.imag))
     length = _of_segment(fw)
     text = f"|ab| = {length}" if fw.ab_mm >= 0 else f"ab = {length}"
-    _segment(of.pen("ab", "dimension"), g, ends[0], ends[1], [p.imag for p in points], text)
+    lower, upper = (complex(g(end)) for end in ends)
+    if abs(upper - lower) > letter(text, 3.5).width + 2:
+        clear_dimensions.dimension(of.pen("ab", "dimension"), first, lower, upper, [AB], text)
+    else:
+        of.pen("ab", "dimension").dimension(lower, upper, AB, text, apart=((lower + upper) / 2 - AB, -1 + 0j))
 
 
 def _of_segment(fw: Wittenbauer) -> str:
@@ -493,23 +489,11 @@ def _for_title(gap: Box, low: float, high: float) -> Box:
     return Box(x0, gap.y0, x0 + gap.width + lack, gap.y1)
 
 
-def _narrow_title(canvas: Canvas, gap: Box, *factors: str) -> Box:
-    """Title of the diagram with its scale factors on as few lines as the gap allows; returns what is left below."""
-    name = tr("Energy-mass diagram")
-    if letter(name, 5.0).width <= gap.width - 2 >= letter(", ".join(factors), 5.0).width:
-        return canvas.title(gap, name, ", ".join(factors))
-    lines = [name, *factors] if letter(name, 5.0).width <= gap.width - 2 else [*name.split(), *factors]
-    height = size_for(lines, gap.width - 2, 5.0)
-    step = 1.6 * height
-    canvas.lines(complex(gap.centre.real, gap.y1 - step), lines, step, height, "centre")
-    return Box(gap.x0, gap.y0, gap.x1, gap.y1 - len(lines) * step - 3.0)
-
-
-def _beneath(canvas: Canvas, gap: Box, said: str) -> Box:
-    """Words right under a title on as many lines as the gap asks for; returns what is left below."""
-    room, height = gap.width - 2, 3.5
-    count = next((n for n in range(1, 4) if all(letter(line, height).width <= room for line in wrapped(said, height, n))), 4)
-    lines = wrapped(said, height, count)
+def _beneath(canvas: Canvas, gap: Box, height: float, *said: object) -> Box:
+    """Scale factors or words right under a title on as many lines as the gap asks for; returns what is left below."""
+    room, text = gap.width - 2.0, ", ".join(str(one).replace(" ", TOGETHER) if len(said) > 1 else str(one) for one in said)
+    tried = [wrapped(text, height, count) for count in range(1, 5)]
+    lines = next((lines for lines in tried if size_for(lines, room, height) == height), tried[-1])
     height = size_for(lines, room, height)
     canvas.lines(complex(gap.centre.real, gap.y1 - height), lines, 1.6 * height, height, "centre")
     return Box(gap.x0, gap.y0, gap.x1, gap.y1 - len(lines) * 1.6 * height - 1.0)
@@ -620,44 +604,26 @@ def inertia_table(project: Project, canvas: Canvas, box: Box, options: Options) 
         quantity = caption if "," in caption else tr("{quantity}, J").format(quantity=caption)
         rows.append(graphs.row(quantity, np.resize(values, len(fw.labels))))
     rows.append(graphs.row(tr("J^red, kg·m^2"), fw.J_reduced))
-    graphs.table(canvas, box, tr("Reduced moment of inertia"), rows)
+    listed.table(canvas, canvas.title(box.inset(0, 0, 0, 2), tr("Reduced moment of inertia")), rows)
 
 
-def work_table_sizes(project: Project, canvas: Canvas, options: Options) -> list[tuple[float, float]]:
-    """Places that the table of works can do with, mm: upright no wider than the option ``widest``, or lying."""
-    title, quantities = _works(project.flywheel)
-    return [*listed.upright_sizes(title, _upright(project.flywheel, quantities), options["widest"]), *LYING]
-
-
-def work_table(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
-    """Table of moment, works and change of energy at the positions: a row for each of them in a place that is higher than wide."""
-    title, quantities = _works(project.flywheel)
-    if box.height > box.width:
-        listed.draw_upright(canvas, box, title, _upright(project.flywheel, quantities), header=2)
-    else:
-        graphs.table(canvas, box, title, [[tr("Position"), *project.flywheel.labels], *quantities])
-
-
-LYING = (207.0, 56.0), (170.0, 48.0)
-"""Sizes of the table of works with a row for each quantity, mm."""
-
-
-def _works(fw: Flywheel) -> tuple[str, list[list[str]]]:
-    """Title of the table of works, and of each quantity its name with the unit and the numbers at the positions."""
+def _works(project: Project, options: Options) -> tuple[str, list[list[str]]]:
+    """Moment, works and change of energy at the positions, the units under the names."""
+    fw: Flywheel = project.flywheel
     varying, constant = indices(fw)
     title = tr("Works of the cycle, M_{index}^{{red}} = {moment} N·m").format(index=constant, moment=constant_moment(fw))
-    return title.replace(" = ", f"{TOGETHER}={TOGETHER}"), [
+    quantities = [
         graphs.row(tr("M_{index}^{{red}}, N·m").format(index=varying), fw.M_reduced),
         graphs.row(tr("A_{index}, J").format(index=varying), fw.work),
         graphs.row(tr("A_{index}, J").format(index=constant), fw.total_plan["A_K"].value),
         graphs.row(tr("ΔE, J"), fw.delta_E),
     ]
-
-
-def _upright(fw: Flywheel, quantities: list[list[str]]) -> list[list[str]]:
-    """The same numbers in columns, the units under the names."""
     columns = [[tr("No."), "", *fw.labels], *([*name.rsplit(", ", 1), *numbers] for name, *numbers in quantities)]
-    return [list(row) for row in zip(*columns, strict=True)]
+    return title.replace(" = ", f"{TOGETHER}={TOGETHER}"), [list(row) for row in zip(*columns, strict=True)]
+
+
+work_table = listed.Upright(_works)
+"""The table of these works."""
 
 
 def results(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
@@ -684,10 +650,7 @@ def results(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
         *frictionless(project),
         *sizes(fw),
     ]
-    left = canvas.title(box, tr("Flywheel design"))
-    step = min(left.height / len(rows), 13.0)
-    height = size_for(rows, box.width, 5.0 if step >= 8 else 3.5)
-    canvas.lines(complex(box.x0, left.y1 - step + 3), rows, step, height)
+    listed.draw_lines(canvas, box, tr("Flywheel design"), rows)
 
 
 def _givens(fw: Flywheel) -> str:
@@ -711,10 +674,7 @@ def power(fw: Flywheel) -> list[str]:
     """Mean power by the work of the cycle, where the efficiency of what lies between motor and crank is given."""
     if fw.data.efficiency is None:
         return []
-    takes, kilowatt, efficiency = fw.reduced.resisting, tr("kW"), Quantity("η", fw.data.efficiency)
-    here, further = (Quantity(step.symbol, float(step.value) / 1000) for step in (fw.power_plan["P"], fw.power_plan["P_дв"]))
-    mean = f"{here.symbol} = M_{{{indices(fw)[1]}}}·ω_1 = {number(here.value)} {kilowatt}"
-    return [f"{mean};  {equation(truediv if takes else mul, (here, efficiency), further, unit=kilowatt)}"]
+    return [";  ".join(of_step(fw.power_plan[name], own=constant(fw)) for name in ("P", "P_дв"))]
 
 
 def motor(fw: Flywheel) -> list[str]:
@@ -722,13 +682,16 @@ def motor(fw: Flywheel) -> list[str]:
     check, data = fw.motor, fw.data.motor
     if check is None or data is None:
         return []
-    strong = tr("P = M_{index}·ω_1/η = {needed} kW {sign} {rated} kW ({name});  η = {efficiency} (η taken)") if data.accepted else \
-        tr("P = M_{index}·ω_1/η = {needed} kW {sign} {rated} kW ({name});  η = {efficiency}")
-    steady = tr("[δ] = 2(n_s − n_r)/n_r = {permitted} ≥ δ: it never runs as a generator") if check.steady else \
-        tr("[δ] = 2(n_s − n_r)/n_r = {permitted} < δ: the motor runs as a generator at times")
-    return [strong.format(index=indices(fw)[1], needed=fixed(check.power / 1000, 2), sign="≤" if check.strong else ">",
-                          rated=number(check.rated_power / 1000), name=data.name, efficiency=number(data.efficiency)),
-            steady.format(permitted=fixed(check.permitted, 4))]
+    rated = f"{'≤' if check.strong else '>'} {number(check.rated_power)} {tr('W')} ({data.name})"
+    steady = tr("{formula} ≥ δ: it never runs as a generator") if check.steady else \
+        tr("{formula} < δ: the motor runs as a generator at times")
+    rated = tr("{said};  η is taken").format(said=rated) if data.accepted else rated
+    return [f"{of_step(check.plan['P'], own=constant(fw))} {rated}", steady.format(formula=of_step(check.plan["[δ]"]))]
+
+
+def constant(fw: Flywheel) -> dict[int, Quantity]:
+    """The constant moment as an operand of formulas, with the letters that the sheet has for it."""
+    return {id(step := fw.driving_plan["M"]): Quantity(f"M_{{{indices(fw)[1]}}}", float(step.value), step.rule.unit)}
 
 
 def frictionless(project: Project) -> list[str]:
@@ -830,7 +793,7 @@ def _energy_graph(fw: Wittenbauer, box: Box, options: Options) -> graphs.Graph:
     """Axes of the graph of dE, and the level of the energy-mass diagram: room for ``b`` below, for the tangent above."""
     low, high = _energy_range(fw)
     spare = box.height - (_UNDER + high - low + graphs.HEAD + graphs.OVER)
-    graphs.check_room(box, box.y1 - spare, "flywheel.total_work")
+    graphs.check_room(box, "flywheel.total_work", box.y1 - spare)
     return graphs.Graph(complex(options["axis"], box.y0 + _UNDER - low + max(spare, 0.0) / 2))
 
 
@@ -840,47 +803,10 @@ def _inertia_graph(fw: Flywheel, box: Box, options: Options) -> graphs.Graph:
     return graphs.Graph(complex(options["axis"], box.y1 - 16 - max(spare / 2, 3.0)), -1j)
 
 
-def _segment(canvas: Canvas, g: graphs.Graph, b: complex, a: complex, levels: list[float], text: str) -> None:
-    """Dimension of ab on the energy axis, from its lower end to its upper one.
-
-    Its number stands in the widest gap between the projection lines.
-    """
-    x = -14.0
-    p, q = complex(g(b + x)), complex(g(a + x))
-    canvas.line(g(a), q - 2, "thin")
-    canvas.line(g(b), p - 2, "thin")
-    canvas.line(p, q, "thin")
-    for tip, u in ((p, 1j), (q, -1j)):
-        canvas.fill((tip, tip + 3.5 * u + 0.6, tip + 3.5 * u - 0.6), "thin")
-    low, top = _gaps(b.imag, a.imag, levels)[0]
-    if top - low > letter(text, 3.5).width + 2:
-        canvas.text(complex(g(x + 0.5j * (low + top))) - 1, text, 3.5, "centre", pi / 2)
-        return
-    # Too near each other for it along the line, the projection lines may leave room beside it, clear of the axis' own lettering
-    # and of the graph that ends there.
-    ink = dense([mark for mark in canvas.marks if not isinstance(mark, Text) and mark.style == "curve"], 1.0)
-    half = complex(letter(text, 3.5).width / 2 + 1.0, 2.5)
-    for low, top in _gaps(b.imag, a.imag, [*levels, *AXIS]):
-        end = complex(g(x + 0.5j * (low + top))) - 1.5
-        off = ink - (end - half.real)
-        if top - low > 6.0 and not ((np.abs(off.real) < half.real) & (np.abs(off.imag) < half.imag)).any():
-            canvas.text(end - 1.2j, text, 3.5, "right")
-            return
-    canvas.label(complex(g(x + 0.5j * (a + b).imag)), text, -1)
-
-
+AB = 14.0
+"""Distance of the dimension line of ab from the axis of the energy-mass diagram, mm."""
 BESIDE = 4.0
 """How near to the point of a tangent the number of another point could be taken for its own, mm."""
-AXIS = -8.0, 6.0
-"""Heights under and over an axis that its numbers and its sign take, mm."""
-
-
-def _gaps(low: float, top: float, levels: list[float]) -> list[tuple[float, float]]:
-    """Gaps between the levels from the lowest to the highest, the widest first."""
-    gaps = pairwise(sorted({low, top, *(v for v in levels if low < v < top)}))
-    return sorted(gaps, key=lambda gap: gap[0] - gap[1])
-
-
 @in_role("symbol")
 def _spoke(canvas: Canvas, centre: complex, u: complex, inner: float, outer: float, half: float) -> None:
     for sign in (1, -1):

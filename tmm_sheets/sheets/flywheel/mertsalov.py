@@ -7,19 +7,22 @@ options ``energies`` (change, second group, first group) and ``inertia`` are the
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import degrees
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from tmm_sheets.construction.equation import Quantity, digits_for, of_step
+from tmm_sheets.construction.formula import letters_of
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_layout import TOGETHER
-from tmm_sheets.numbers import decimals_for, enough, fixed, number, size
-from tmm_sheets.sheets.components import graphs
+from tmm_sheets.numbers import clean, decimals_for, enough, fixed, number
+from tmm_sheets.sheets.components import graphs, listed
 from tmm_sheets.sheets.flywheel import flywheel
 from tmm_sheets.sheets.linkage.kinetic_frames import flat
 from tmm_sheets.sheets.player import PlayerStage, stage
@@ -178,7 +181,7 @@ def _omega_scale(fw: Mertsalov) -> Scale:
     return Scale(mu.symbol, float(f"{mu.mu:.4g}"), mu.unit)
 
 
-def position_table(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def _found(project: Project, options: Options) -> tuple[str, list[list[str]]]:
     """What was found at every position: moment, work, energies, inertia, angular velocity and acceleration of the crank."""
     fw = procedure(project)
     varying, _ = flywheel.indices(fw)
@@ -194,37 +197,28 @@ def position_table(project: Project, canvas: Canvas, box: Box, options: Options)
     cells = [graphs.column(values, 5 if name == "ω_1" else 4) for name, _, values in columns]
     rows = [[tr("No."), *(name for name, _, _ in columns)], ["", *(unit for _, unit, _ in columns)]]
     rows += [[label, *(column[i] for column in cells)] for i, label in enumerate(fw.labels)]
-    left = canvas.title(box.inset(0, 0, 0, 2), tr("Results by positions"))
-    graphs.table_in(canvas, left, rows, 7.0, [9.0], header=2)
+    return tr("Results by positions"), rows
+
+
+position_table = listed.Upright(_found)
+"""The table of these results."""
 
 
 def results(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Formulas with their numbers: segment, moment of inertia, scale factor and check of omega, acceleration, motor, sizes."""
-    fw = procedure(project)
-    k = project.force_index
-    _, _, _, sign = _signs(options)
-    varying, constant = flywheel.indices(fw)
-    plan = fw.position_acceleration
-    psi, slope, moment, inertia, epsilon = (float(plan[name].value[k]) for name in ("ψ", "dJ/dφ", "M", "J", "ε1"))
-    mu = _omega_scale(fw)
-    held = _held(fw)
-    rows = [
-        _givens(fw), *flywheel.found(fw), *([flywheel.converged(fw)] if fw.given else []),
-        tr("μ_ω = μ_E/({held}·ω_{{1m}}) = {mu} {unit}").format(held=held, mu=number(mu.mu), unit=mu.unit),
-        *_extremes(fw),
-        tr("Position {label}:  ψ = {psi}°;  d{sign}/dφ = tan ψ·μ_J/μ_φ = {slope} kg·m^2").format(
-            label=fw.labels[k], psi=fixed(degrees(psi), 2), sign=sign,
-            slope=number(slope, kind=size([plan["dJ/dφ"].value], k))),
-        tr("M = M_{constant} + M_{varying} = {moment} N·m;  {held} + {sign} = {inertia} kg·m^2").format(
-            constant=constant, varying=varying, moment=enough(moment, 1, size([plan["M"].value], k)), held=held, sign=sign,
-            inertia=enough(inertia, 2)),
-        tr("ε_1 = (M − ω_{{1m}}^2/2·d{sign}/dφ)/({held} + {sign}) = {epsilon} rad/s^2").format(
-            sign=sign, held=held, epsilon=enough(epsilon, 3, size([plan["ε1"].value], k))),
-        *flywheel.motor(fw), *flywheel.power(fw), *flywheel.frictionless(project), *flywheel.disagreement(fw), *flywheel.sizes(fw)]
-    left = canvas.title(box, tr("Flywheel design by Mertsalov's method"))
-    step = min(left.height / len(rows), 11.0)
-    for i, line in enumerate(rows):
-        canvas.text(complex(box.x0, left.y1 - (i + 0.65) * step), line, size_for([line], box.width, 3.5))
+    fw, k = procedure(project), project.force_index
+    plan, varying, sign = fw.position_acceleration, flywheel.indices(fw)[0], _signs(options)[3]
+    names = {"M_пр": tr("M_{index}^{{red}}").format(index=varying), "J_II": sign, "dJ/dφ": f"d{sign}/dφ"}
+    own = flywheel.constant(fw)
+    for step in plan:  # what is nothing beside the other positions is nothing
+        value = clean(float(step.at(k)), float(np.abs(step.value).max()))
+        own[id(step)] = Quantity(names.get(step.name, letters_of(step.symbol or step.name)), value, step.rule.unit)
+    moment, inertia, slope, epsilon = (of_step(plan[name], k, own=own) for name in ("M", "J", "dJ/dφ", "ε1"))
+    position = f"{tr('Position {label}').format(label=fw.labels[k])}:  ψ = {fixed(degrees(float(plan['ψ'].value[k])), 2)}°"
+    listed.draw_lines(canvas, box, tr("Flywheel design by Mertsalov's method"), [
+        _givens(fw), *flywheel.found(fw), *([flywheel.converged(fw)] if fw.given else []), of_step(fw.speed_plan["μ_ω"]),
+        *_extremes(fw), f"{position};  {slope}", moment, inertia, epsilon,
+        *flywheel.motor(fw), *flywheel.power(fw), *flywheel.frictionless(project), *flywheel.disagreement(fw), *flywheel.sizes(fw)])
 
 
 def _givens(fw: Mertsalov) -> str:
@@ -237,28 +231,21 @@ def _givens(fw: Mertsalov) -> str:
                        index=flywheel.indices(fw)[1], moment=flywheel.constant_moment(fw))
 
 
-def _held(fw: Mertsalov) -> str:
-    """What carries the running: all of the first group, or without a flywheel the crank and the rotor alone."""
-    if fw.needed:
-        return "J_I"
-    return tr("(J_cr + J_r·u^2)") if fw.J_rotor else tr("J_cr")
-
-
-def _extremes(fw: Mertsalov) -> tuple[str, str]:
+def _extremes(fw: Mertsalov) -> Iterator[str]:
     """Greatest and least angular velocity beside those that are permitted, which they keep to with the flywheel only.
 
     A given flywheel has to keep to none.
     """
     digits = flywheel.omega_digits(fw.reduced.omega1, [fw.unevenness])
-    if fw.given:
-        highest, lowest = (fixed(found, digits) for found in fw.extremes)
-        return tr("ω_{{max}} = {found} rad/s").format(found=highest), tr("ω_{{min}} = {found} rad/s").format(found=lowest)
-    texts = (tr("ω_{{max}} = {found};  ω_m(1 + δ/2) = {permitted} rad/s"),
-             tr("ω_{{min}} = {found};  ω_m(1 − δ/2) = {permitted} rad/s")) if fw.needed else \
-        (tr("ω_{{max}} = {found} < ω_m(1 + δ/2) = {permitted} rad/s"), tr("ω_{{min}} = {found} > ω_m(1 − δ/2) = {permitted} rad/s"))
-    fast, slow = (said.format(found=fixed(found, digits), permitted=fixed(float(fw.speed_plan[f"[ω_{name}]"].value), digits))
-                  for said, found, name in zip(texts, fw.extremes, ("max", "min"), strict=True))
-    return fast, slow
+    for name, found, sign in zip(("max", "min"), fw.extremes, "<>", strict=True):
+        said = f"ω_{{{name}}} = {fixed(found, digits)}"
+        if fw.given:
+            yield f"{said} {tr('rad/s')}"
+            continue
+        bound = fw.speed_plan[f"[ω_{name}]"]
+        value = Quantity(f"{said}{';  ' if fw.needed else f' {sign} '}[ω_{{{name}}}]", float(bound.value), "rad/s",
+                         digits_for(float(bound.value), digits), digits)
+        yield of_step(bound, own={id(bound): value})
 
 
 def comparison(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
@@ -277,7 +264,7 @@ def comparison(project: Project, canvas: Canvas, box: Box, options: Options) -> 
     rows += [[name, fixed(first, inertia), fixed(fastest, digits), fixed(slowest, digits), fixed(delta, places)]
              for name, first, fastest, slowest, delta in made]
     left = canvas.title(box.inset(0, 0, 0, 2), tr("Comparison of the methods with the exact running"))
-    place = graphs.table_in(canvas, left, rows, 8.0, [max(letter(line[0], 3.5).width for line in rows) + 3.0], 12.0)
+    place = listed.table_in(canvas, left, rows, 8.0, [max(letter(line[0], 3.5).width for line in rows) + 3.0], 12.0)
     if fw.given:
         return
     _, _, _, sign = _signs(options)

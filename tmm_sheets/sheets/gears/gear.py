@@ -14,12 +14,13 @@ from tmm_sheets.construction.equation import Quantity, digits_for, of_step
 from tmm_sheets.construction.scale import Scale, fit
 from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import broken, fitted
+from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.drawing.marks import Box, Dimension
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
+from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.components.listed import Form, Formulas
 from tmm_sheets.sheets.gears import gear_picture
-from tmm_sheets.sheets.gears.gear_marks import Window, draw_radii, gap, ruled_table
+from tmm_sheets.sheets.gears.gear_marks import Window, draw_radii, gap, ruled_table, sentence
 from tmm_sheets.sheets.player import PlanFrame, PlayerStage, placed, proportion, ratio, stage, standard
 from tmm_sheets.words import marked, tr
 
@@ -266,9 +267,7 @@ def sliding_table(project: Project, canvas: Canvas, box: Box, options: dict[str,
                                ("theta1", "{symbol}", "θ_1"), ("theta2", "{symbol}", "θ_2")):
         rows.append([text.format(symbol=symbol), *(fixed(v, 2) if np.isfinite(v) else "−∞" for v in plan[name].value)])
     inner = canvas.title(box, tr("Velocities and specific sliding"))
-    head = 24.0
-    widths = [head] + [(box.width - head) / len(plan.labels)] * len(plan.labels)
-    canvas.table(complex(box.x0, inner.y1), widths, rows, row=min(14.0, (inner.y1 - box.y0) / len(rows)), height=3.5)
+    listed.table_in(canvas, inner, rows, 14.0, [24.0])
 
 
 def parameters(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -307,8 +306,7 @@ def parameters(project: Project, canvas: Canvas, box: Box, options: dict[str, An
         (tr("Fillet radius, mm"), "ρ_f", *both("fillet")) if gear.profile == "fillet" else (
             tr("Fillet radius of the rack, mm"), "ρ_f", fixed(one.fillet * 1e3, 2)),
     ]
-    inner = canvas.title(box, tr("Main parameters of the gear pair"))
-    ruled_table(canvas, Box(box.x0, box.y0, box.x1, inner.y1), rows, (18.0, 30.0, 30.0), 12.0)
+    ruled_table(canvas, canvas.title(box, tr("Main parameters of the gear pair")), rows, (18.0, 30.0, 30.0), 12.0)
 
 
 def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -338,8 +336,6 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     if gear.internal:
         clear = degrees(float(gear.step("tips_clear").value))
         rows += [(tr("Clearance of the tips beside the mesh (≥ 0)"), "δ_{12}", f"{fixed(clear, 2)}°")]
-    inner = canvas.title(box, tr("Quality indices"))
-    end = ruled_table(canvas, Box(box.x0, box.y0 + 50, box.x1, inner.y1), rows, (20.0, 32.0), 12.0)
     one, two = gear.wheels
     scale = canvas.scales.get("gear-engagement") or gear.picture_scale()
     notes = [
@@ -352,12 +348,9 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
             length=number(float(gear.sliding["yV1"].value[3])))]
           if "gear-sliding" in canvas.scales or gear.profile == "fillet" else []),
         tr("driving wheel {wheel}.").format(wheel=gear.driver),
-        *(f"{text[0].upper()}{text[1:]}." for text in gear.warnings),
+        *map(sentence, gear.warnings),
     ]
-    for k, text in enumerate(notes):
-        y = end - 8 - 7 * k
-        if y > box.y0:
-            canvas.put(fitted(text, box.width, 3.5), complex(box.x0, y), 0.0, text)
+    ruled_table(canvas, canvas.title(box, tr("Quality indices")), rows, (20.0, 32.0), 12.0, notes)
 
 
 OF_PAIR = ("inv_alpha", "inv_alpha_w", "alpha_w", "x_sum", "y", "dy", "a", "a_w", "p", "pb", "N1N2", "g_alpha", "eps_alpha")

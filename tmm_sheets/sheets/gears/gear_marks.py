@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cmath import phase, rect
+from cmath import rect
 from collections.abc import Iterable, Sequence
-from itertools import pairwise, product
+from itertools import pairwise
 from math import cos, inf, pi, radians, sin
 from typing import TYPE_CHECKING, Any
 
@@ -13,10 +13,10 @@ import numpy as np
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, in_role
 from tmm_sheets.drawing.ink import arcs_inside, chords, polyline_inside, segment_inside
-from tmm_sheets.drawing.ink_index import InkIndex, enters
+from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Arc, Box, Dimension, Points, Role
-from tmm_sheets.drawing.text_boxes import SHELF, spread
+from tmm_sheets.drawing.text_boxes import spread
 from tmm_sheets.drawing.text_layout import LEAST, needs
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets.components.listed import LARGE, LETTERS, ROW
@@ -33,20 +33,15 @@ KINKS_APART_MM, BREAK_OVER_MM = 120.0, 3.0
 """Distance of the kinks of a break line, and how far it runs beyond what it cuts, mm."""
 
 
-def gap(canvas: Canvas, a: complex, b: complex, text: str, away: complex, space: float, factor: float) -> None:
+def gap(canvas: Canvas, a: complex, b: complex, text: str, away: complex, space: float, factor: float, thin: float = 1.0) -> None:
     """A small upright distance, its arrows outside, lettering beside it; it measures ``factor`` per mm."""
     first = len(canvas.marks)
-    distance(canvas, a, b)
-    canvas.label((a + b) / 2, text, away=away, gap=space, dimension=len(canvas.dimensions))
-    canvas.dimensions.append(Dimension("linear", first, len(canvas.marks), a, b, a, text, (a + b) / 2, factor))
-
-
-def distance(canvas: Canvas, a: complex, b: complex) -> None:
-    """The arrows of a small upright distance."""
     for tip, way in ((a, 1j), (b, -1j)):
         canvas.arrow_head(tip, way, 2.5)
         canvas.line(tip, tip - 6 * way, "thin")
     canvas.line(a, b, "thin")
+    canvas.label((a + b) / 2, text, away=away, gap=space, dimension=len(canvas.dimensions), thin=thin)
+    canvas.dimensions.append(Dimension("linear", first, len(canvas.marks), a, b, a, text, (a + b) / 2, factor))
 
 
 class Window:
@@ -125,11 +120,13 @@ def hatch_between(canvas: Canvas, edge: Points, inner: Points, step: float = 1.3
 
 
 @in_role("table")
-def ruled_table(canvas: Canvas, box: Box, rows: Sequence[tuple[str, ...]], widths: Sequence[float], tallest: float) -> float:
-    """Ruled table across the box with the names left; a row with one value spans the value columns. Returns its bottom.
+def ruled_table(canvas: Canvas, box: Box, rows: Sequence[tuple[str, ...]], widths: Sequence[float], tallest: float,
+                notes: Sequence[str] = ()) -> None:
+    """Ruled table across the box with the names left, ``notes`` under it; a row with one value spans the value columns.
 
     ``widths`` are the least ones of the columns of values.
     """
+    box = box.inset(0, NOTE_MM * len(notes), 0, 0)
     row, least = min(tallest, box.height / len(rows)), list(widths)
 
     def columns(height: float) -> list[float]:
@@ -159,7 +156,17 @@ def ruled_table(canvas: Canvas, box: Box, rows: Sequence[tuple[str, ...]], width
     canvas.line(complex(box.x0, bottom), complex(box.x1, bottom), "main")
     for x in (box.x0, box.x1):
         canvas.line(complex(x, bottom), complex(x, box.y1), "main")
-    return bottom
+    for k, text in enumerate(notes):
+        canvas.put(fitted(text, box.width, 3.5), complex(box.x0, bottom - 5.5 - NOTE_MM * k), 0.0, text)
+
+
+def sentence(text: str) -> str:
+    """A warning as a sentence."""
+    return f"{text[0].upper()}{text[1:]}."
+
+
+NOTE_MM = 7.0
+"""Distance of lines under a table, mm."""
 
 
 RADII_APART_MM, RADII_CLOSE_MM = 7.0, 5.8
@@ -208,7 +215,7 @@ class Radii:
         for key, (direction, begin) in found.items():
             self.radius(key, direction, begin)
         for n, (key, _, _) in enumerate(CIRCLES):
-            if key not in found and not self.on_shelf(key, InkIndex(self.canvas.marks[self.picture.first:])):
+            if key not in found:
                 self.on_arc(key, self.far + FAN_RAD * (n - len(CIRCLES) // 2), right=n % 2 == 1)
 
     def radius(self, key: str, direction: float, begin: float) -> None:
@@ -298,38 +305,6 @@ class Radii:
         low, high = sorted((-up * NAME_CLEAR_MM, up * (NAME_OVER_MM + NAME_HEIGHT_MM + NAME_CLEAR_MM)))
         name = Box(self.outer - width - NAME_INSIDE_MM, low, self.outer + NAME_CLEAR_MM, high)
         return not self.drawn.count_in(name, self.centre, direction)
-
-    def on_shelf(self, key: str, drawn: InkIndex) -> bool:
-        """Radius of a circle without room for its name: an arrow from outside all circles or inside them, the name on a shelf."""
-        at_arc, text = self.tips[key], self.texts[key]
-        laid, place = letter(text, NAME_HEIGHT_MM), self.picture.box.inset(3)
-        rings = max(*self.tips.values(), float(self.picture.mm(self.wheel.outside))), min(self.tips.values())
-        far = {float(a): abs(phase(rect(1, a - self.far))) for arc in arcs_inside(place, self.centre, at_arc)
-               for a in np.arange(*arc, radians(1.5))}
-        angles = sorted((a for a in far if far[a] < pi - ENGAGED_PITCHES * self.wheel.tau), key=lambda a: far[a])
-        for further, angle, way, sense in product(np.arange(2.0, 44.0, 2.0), angles, (1, -1), (1, -1)):
-            u = way * rect(1, angle)
-            tip, end = self.centre + rect(at_arc, angle), self.centre + rect(rings[way < 0], angle) + further * u
-            side = sense if u.real >= 0 else -sense
-            x0, x1 = sorted((end.real, end.real + side * (laid.width + 1.0)))
-            box = Box(x0 - SHELF, end.imag, x1 + SHELF, end.imag + SHELF + laid.descent + NAME_HEIGHT_MM)
-            if not (place.contains(complex(x0, box.y0)) and place.contains(complex(x1, box.y1))):
-                continue
-            if drawn.count_in(box.inset(-NAME_CLEAR_MM)) or drawn.is_crossed(tip + NAME_CLEAR_MM * u, end):
-                continue
-            name = Box(x0, end.imag + SHELF, x1, box.y1)
-            if enters(tip, end - tip, *name) or enters(tip, ARROW_MM * u, *name.inset(-NAME_CLEAR_MM)):  # over its own name
-                continue
-            first, pen = len(self.canvas.marks), self.picture.stage.pen(f"{key}{self.wheel.number}", "dimension")
-            pen.line(tip + ARROW_MM * u, end, "thin")
-            pen.arrow_head(tip, -u)
-            pen.line(end, complex(x1 if side > 0 else x0, end.imag), "thin")
-            at = complex(x0 + 0.5, end.imag + SHELF + laid.descent)
-            self.canvas.put(laid, at, 0.0, text)
-            middle = at + complex(laid.width, NAME_HEIGHT_MM) / 2
-            self.dimension(first, tip, text, middle)
-            return True
-        return False
 
     def on_arc(self, key: str, direction: float, right: bool) -> None:
         """Name of a circle where its radius does not fit in: on the longest arc that is seen, of a whole circle in a direction.

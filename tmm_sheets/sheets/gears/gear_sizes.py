@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cache
 from math import pi
 from typing import TYPE_CHECKING
 
 from tmm_sheets.construction.readable import TOOTH
-from tmm_sheets.sheets.border_solver import BorderNode, Need, reached
+from tmm_sheets.sheets.border_solver import BorderNode, Need, reached, stepped
 from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.gears import gear, gear_picture, rack, train, train_scheme
 from tmm_sheets.sheets.player import standard
@@ -25,13 +23,6 @@ OTHER = 0.2
 """What width counts that only shows more of the greater wheel."""
 
 
-def _node(view: ViewPlace, least: tuple[float, float], drawn: Callable[[int, int], float], share: float = 1.0) -> BorderNode:
-    """Node of a view that draws on so much of a place, whole mm, not below ``least``."""
-    known = cache(drawn)
-    need = Need(least=least, drawn=lambda w, h: max(known(int(w), int(h)), 1.0))
-    return BorderNode(need, area=share * view.box.width * view.box.height)
-
-
 def engagement(project: Project, view: ViewPlace) -> BorderNode:
     """The smaller wheel is to be seen whole, the other may be cut at both sides; teeth that are too low fill nothing."""
     pair = project.gear
@@ -44,12 +35,12 @@ def engagement(project: Project, view: ViewPlace) -> BorderNode:
         whole = min(2 * min(w.ra for w in pair.wheels) / mu.mu + BESIDE, width)
         return (whole + (width - whole) * OTHER) * height * reached(mu.mm(tooth), TOOTH)
 
-    return _node(view, (180.0, 300.0), drawn)
+    return stepped(view, (180.0, 300.0), drawn)
 
 
 def sliding(project: Project, view: ViewPlace) -> BorderNode:
     """Two graphs under one another; they need height more than width."""
-    return _node(view, (130.0, 240.0), lambda width, height: min(width, 240) * min(height, 320))
+    return stepped(view, (130.0, 240.0), lambda width, height: min(width, 240) * min(height, 320))
 
 
 def generating(project: Project, view: ViewPlace) -> BorderNode:
@@ -62,7 +53,7 @@ def generating(project: Project, view: ViewPlace) -> BorderNode:
         mu = standard((across, width - beside), (high, height - rack.OVER)).mu
         return min(width, 1.6 * across / mu + beside) * min(height, rack.USUAL * high / mu + rack.OVER)
 
-    return _node(view, (120.0, 110.0), drawn)
+    return stepped(view, (120.0, 110.0), drawn)
 
 
 def mesh(project: Project, view: ViewPlace) -> BorderNode:
@@ -73,7 +64,7 @@ def mesh(project: Project, view: ViewPlace) -> BorderNode:
         mu = gear.mesh_scale(pair, width, height).mu
         return min(width, gear.MOST * pair.p / mu + gear.MESH[0]) * min(height, gear.mesh_height(pair) / mu + gear.MESH[1])
 
-    return _node(view, (120.0, 90.0), drawn)
+    return stepped(view, (120.0, 90.0), drawn)
 
 
 def _train(project: Project, view: ViewPlace) -> Train:
@@ -91,12 +82,12 @@ def scheme(project: Project, view: ViewPlace) -> BorderNode:
         whole = 2 * views.side / mu + views.beside(train_scheme.WIDEST + 24.0)
         return min(width, whole) * min(height, (views.top + views.bottom) / mu + train_scheme.OVER)
 
-    return _node(view, (views.beside(train_scheme.NARROWEST) + 60.0, 130.0), drawn)
+    return stepped(view, (views.beside(train_scheme.NARROWEST) + 60.0, 130.0), drawn)
 
 
 def speeds(project: Project, view: ViewPlace) -> BorderNode:
     """A plan of speeds of rotation: rays from a pole to a line."""
-    return _node(view, (150.0, 100.0), lambda width, height: 0.6 * width * min(height, 190))
+    return stepped(view, (150.0, 100.0), lambda width, height: 0.6 * width * min(height, 190))
 
 
 def table(project: Project, view: ViewPlace) -> BorderNode:

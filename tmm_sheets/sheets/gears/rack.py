@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas
-from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.text_boxes import SHELF
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
-from tmm_sheets.sheets.gears.gear_marks import Window, distance, gap
+from tmm_sheets.sheets.gears.gear_marks import Window, gap
 from tmm_sheets.sheets.player import PlanFrame, ratio, stage, standard
 from tmm_sheets.words import tr
 
@@ -34,8 +32,6 @@ OVER = 16.0 + NOTES
 """Room over the rack with the title, mm."""
 NAMED = 36.0, 6.0, 12.0
 """Distance of the names of the rack's lines from the window's side, from one another, and the least from the side, mm."""
-CLEAR, HEAD, TAIL = 0.8, 2.5, 9.0
-"""What is kept free about sizes of the rack, arrow head, tail of a small size, mm."""
 USUAL, MOST = 1.6, 2.2
 """How far the window goes under the pole, in what must be seen there: without the wheel's centre, and with it at the most."""
 BELOW = 0.5
@@ -68,7 +64,7 @@ class _RackPicture:
     """The surroundings of the pole P0 of the generating engagement, cut out of wheel and rack."""
 
     def __init__(self, gear: GearPair, canvas: Canvas, box: Box) -> None:
-        self.gear, self.canvas, self.first = gear, canvas, len(canvas.marks)
+        self.gear, self.canvas = gear, canvas
         self.wheel = gear.pinion
         self.rack = self.wheel.rack
         top, bottom = extent(gear)
@@ -190,70 +186,29 @@ class _RackPicture:
     def dimensions(self, c: Canvas) -> None:
         """Shift, addendum, clearance, pitch and tip radius of the rack."""
         w, rack, gear = self.window.box, self.rack, self.gear
-        m = gear.m
+        m, factor = gear.m, 1e3 * self.at.scale.mu
         tip = complex(self.at(rack.placed(rack.tip_centre, 0.0)))
         touch = tip + rect(rack.tip_radius / self.at.scale.mu, -(rack.alpha + pi / 2) / 2)
-        self.tip_radius(c, tip, touch)
-        x = w.x0 - 4.0
+        c.dot(tip, 0.5, "thin")
+        end = touch + 12.0 * (touch - tip) / abs(touch - tip)  # in the body of the wheel: between the teeth are the rack's flanks
+        c.line(tip, end, "thin")
+        c.arrow_head(touch, (touch - tip) / abs(touch - tip), 2.5)
+        c.label(end, f"ρ_f = {fixed(rack.tip_radius * 1e3, 2)}", away=touch - tip, thin=KEPT_OFF)
+        x = w.x0 + 6.0
         for low, part in ((0.0, self.wheel.addendum), (-rack.addendum * m, rack.addendum)):
             a, b = complex(x, self.height(low)), complex(x, self.height(low + part * m))
-            c.line(a, b, "thin")
-            c.arrow_head(a, -1j, 3.0)
-            c.arrow_head(b, 1j, 3.0)
-            c.label((a + b) / 2, f"h_a^{{*}}m = {number(part * m * 1e3)}", away=-1, height=3.5, gap=1.0)
-        for level in (-rack.addendum * m, -rack.depth, self.wheel.addendum * m):
-            y = self.height(level)
-            c.line(complex(x - 2, y), complex(w.x0 + 6, y), "thin")
+            c.dimension(a, b, 10.0, f"h_a^{{*}}m = {number(part * m * 1e3)}", factor=factor, apart=((a + b) / 2 - 10.0, -1 + 0j))
         low, high = self.height(-rack.depth), self.height(-rack.addendum * m)
+        c.line(complex(x, low), complex(x - 12.0, low), "thin")
         clearance = f"c^{{*}}m = {number(gear.clearance * m * 1e3, 3)}"
-        gap(c, complex(x, low), complex(x, high), clearance, -1, 1.5, 1e3 * self.at.scale.mu)
+        gap(c, complex(x - 10.0, low), complex(x - 10.0, high), clearance, -1, 1.5, factor)
         if abs(rack.shift) * m / self.at.scale.mu > 0.3:
             low, high = sorted((self.height(0.0), self.height(-rack.shift * m)))
-            self.shift(c, low, high, f"xm = {fixed(rack.shift * m * 1e3, 2)}")
-        laid = letter(f"p = {fixed(gear.p * 1e3, 2)}", 3.5)
-        y = w.y1 - NOTES + 5.0
-        half = gear.p / 2 / self.at.scale.mu
-        a, b = complex(self.pole.real - half, y), complex(self.pole.real + half, y)
+            gap(c, complex(w.x1 - 10, low), complex(w.x1 - 10, high), f"xm = {fixed(rack.shift * m * 1e3, 2)}", -1, 2.5, factor,
+                thin=KEPT_OFF)
+        half, reference = gear.p / 2 / self.at.scale.mu, self.height(0.0)
+        a, b = (complex(self.pole.real + side * half, reference) for side in (-1, 1))
         if w.contains(a) and w.contains(b):
-            c.line(a, b, "thin")
-            c.arrow_head(a, -1, 3.0)
-            c.arrow_head(b, 1, 3.0)
-            for end in (a, b):
-                self.window.line(self.stage, "M", end + 2j, complex(end.real, self.height(0.0)), "thin", "dimension")
-            c.put(laid, (a + b) / 2 + complex(4, 1.0))
-
-    def tip_radius(self, c: Canvas, tip: complex, touch: complex) -> None:
-        """Radius of the rack's tip, its name on a shelf in the body of the wheel: between the teeth are the rack's flanks."""
-        text, u = f"ρ_f = {fixed(self.rack.tip_radius * 1e3, 2)}", (touch - tip) / abs(touch - tip)
-        laid, drawn = letter(text, 3.5), InkIndex(c.marks[self.first:])
-        c.dot(tip, 0.5, "thin")
-        c.arrow_head(touch, u, HEAD)
-        for further in np.arange(4.0, 60.0, 1.0):
-            end = touch + further * u
-            box = Box(end.real, end.imag + CLEAR, end.real + laid.width + 1.0, end.imag + SHELF + laid.descent + 3.5 + CLEAR)
-            if box.y0 < self.window.box.y0 + CLEAR or box.x1 > self.window.box.x1 - CLEAR:
-                break
-            if not drawn.count_in(box):
-                c.line(tip, end, "thin")
-                c.line(end, end + laid.width + 1.0, "thin")
-                c.put(laid, end + complex(0.5, SHELF + laid.descent), 0.0, text)
-                return
-        c.line(tip, touch, "thin")
-        c.label(tip, text, away=-1 + 0.4j, gap=1.5)
-
-    def shift(self, c: Canvas, low: float, high: float, text: str) -> None:
-        """Distance of the rack's reference line from its pitch line, named beside a tail of its arrows where nothing else is."""
-        laid, drawn, w = letter(text, 3.5), InkIndex(c.marks[self.first:]), self.window.box
-        for x in np.arange(w.x1 - 8.0, self.pole.real + 8.0, -1.0):
-            arrows = Box(x - 1.0, high + CLEAR, x + 1.0, high + TAIL), Box(x - 1.0, low - TAIL, x + 1.0, low - CLEAR)
-            if any(map(drawn.count_in, arrows)):
-                continue
-            for side, y in ((-1, high + 3.0), (1, high + 3.0), (-1, low - 6.5), (1, low - 6.5)):
-                left = x + 1.5 if side > 0 else x - 1.5 - laid.width
-                if not w.contains(complex(left, y)) or not w.contains(complex(left + laid.width, y)):
-                    continue
-                if not drawn.count_in(Box(left, y - laid.descent, left + laid.width, y + 3.5).inset(-CLEAR)):
-                    distance(c, complex(x, low), complex(x, high))
-                    c.put(laid, complex(left, y), 0.0, text)
-                    return
-        gap(c, complex(w.x1 - 26, low), complex(w.x1 - 26, high), text, -1, 2.5, 1e3 * self.at.scale.mu)
+            text = f"p = {fixed(gear.p * 1e3, 2)}"
+            beside = 0.5 + (4.0 + letter(text, 3.5).width / 2) / abs(b - a)  # the axis
+            c.dimension(a, b, w.y1 - NOTES + 5.0 - reference, text, share=beside, factor=factor)

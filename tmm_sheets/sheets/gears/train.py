@@ -10,14 +10,14 @@ from math import ceil, pi, prod, sin
 from operator import mul, truediv
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.construction.equation import Quantity, digits_for, equation
+from tmm_sheets.construction.equation import Quantity, digits_for, equation, of_step
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import fitted, size_for
+from tmm_sheets.drawing.lettering import fitted
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_layout import widened
 from tmm_sheets.numbers import fixed, is_zero, number
 from tmm_sheets.sheets.components.listed import LARGE, Lines, Table, letters_in
-from tmm_sheets.sheets.gears.gear_marks import ruled_table
+from tmm_sheets.sheets.gears.gear_marks import ruled_table, sentence
 from tmm_sheets.sheets.gears.train_scheme import (
     LINKS,
     POINTS,
@@ -56,45 +56,17 @@ def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         teeth = str(int(plan[f"z{name}"].value)) if name in train.data.teeth else "–"
         n = number(float(plan[f"n{name}"].value))
         rows.append((f"{name} — {tr('given')}" if name in train.given else name, teeth, n))
-    inner = canvas.title(box, tr("Wheels and speeds of rotation, rpm"))
-    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(train.warnings), box.x1, inner.y1), rows, (30.0, 40.0), LARGE)
-    for k, text in enumerate(train.warnings):
-        said = f"{text[0].upper()}{text[1:]}."
-        canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 5.5 - 6 * k), 0.0, said)
-
-
-def sizes(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Pitch diameters and distances of axes in letters and in numbers."""
-    lines = dimensions(project)
-    left = canvas.title(box, tr("Dimensions of the train, mm"))
-    step = min(LARGE, left.height / len(lines))
-    canvas.lines(complex(box.x0, left.y1 - 0.8 * step), lines, step, size_for(lines, box.width, 5.0 if step >= 9.0 else 3.5))
+    ruled_table(canvas, canvas.title(box, tr("Wheels and speeds of rotation, rpm")), rows, (30.0, 40.0), LARGE,
+                list(map(sentence, train.warnings)))
 
 
 def dimensions(project: Project) -> list[str]:
-    """Distance of the axes of every stage, half the sum or the difference of its diameters, and diameters of the wheels."""
-    train = project.train
-    plan = train.kinematics
-    m, lines, shown = Quantity("m", float(plan["m"].value)), dict[str, None](), set[Any]()
-    for mesh in train.meshes:
-        c, p, way = mesh.central, mesh.planet, 1 if mesh.sign > 0 else -1
-        z = {name: Quantity(f"z_{{{name}}}", float(plan[f"z{name}"].value)) for name in (c, p)}
-        distance = 1e3 * train.distance(mesh)
-        if (stage := train.stage(mesh)) not in shown:  # planets that turn together run at one distance
-            shown.add(stage)
-            lines[equation(lambda m, one, two, way=way: m * (one + way * two) / 2, (m, z[c], z[p]),
-                           Quantity(f"a_{{{c}–{p}}}", distance))] = None
-        # Where wheels of another sum of teeth run at the same distance they roll on other circles than those of the module.
-        rolled = float(train.pitch(mesh).value)
-        for name, other in ((c, p), (p, c)):
-            size = rolled * z[name].value / z[c].value
-            if abs(rolled - m.value * z[c].value) < 1e-9 * rolled:
-                said = equation(mul, (m, z[name]), Quantity(f"d_{{{name}}}", size))
-            else:
-                said = equation(lambda a, own, one, two, way=way: 2 * a * own / (one + way * two),
-                                (Quantity("a", distance), z[name], z[c], z[p]), Quantity(f"d_{{w{name}–{other}}}", size))
-            lines[said] = None
-    return list(lines)
+    """Distances of the axes and pitch diameters in letters and in numbers."""
+    return [of_step(step) for step in project.train.kinematics if step.name[0] in "ad"]
+
+
+sizes = Lines(marked("Dimensions of the train"), lambda project, canvas: dimensions(project))
+"""Pitch diameters and distances of axes in letters and in numbers."""
 
 
 def of_turns(name: str, n: float) -> str:
@@ -120,16 +92,6 @@ def mobility_lines(train: Train, ratios: bool = True) -> list[str]:
     return lines + [of_turns(name, value) for name, value in n.items()]
 
 
-def willis(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """The equation of Willis of every mesh, in letters and in numbers; multiplied out, for a planet may rest on its carrier."""
-    train = project.train
-    lines = [line for m in train.meshes for line in willis_lines(train, m)]
-    left = canvas.title(box, tr("Willis equations of the meshes (n in rpm)"))
-    step = min(left.height / len(lines), LARGE)
-    height = size_for(lines, box.width, 5.0 if step >= 9.0 else 3.5)
-    canvas.lines(complex(box.x0, left.y1 - step), lines, step, height)
-
-
 def willis_lines(train: Train, m: Mesh) -> tuple[str, str]:
     """z_c(n_c - n_H) = -+z_p(n_p - n_H) of a mesh, outer or inner; without a carrier n_H is none."""
     plan = train.kinematics
@@ -146,6 +108,11 @@ def willis_lines(train: Train, m: Mesh) -> tuple[str, str]:
     signs = {name: f"z_{{{name}}}" for name in (c, p)}
     return (f"{c}–{p}:  {side(signs, letters, c)} = {sign}{side(signs, letters, p)}",
             f"{side(teeth, turns, c)} = {sign}{side(teeth, turns, p)}")
+
+
+willis = Lines(marked("Willis equations of the meshes (n in rpm)"),
+               lambda project, canvas: (line for m in project.train.meshes for line in willis_lines(project.train, m)))
+"""The equation of Willis of every mesh, in letters and in numbers; multiplied out, for a planet may rest on its carrier."""
 
 
 def _signed(value: float) -> str:
@@ -222,11 +189,8 @@ def conditions(project: Project, canvas: Canvas, box: Box, options: dict[str, An
         names = "; ".join(f"d_{{{n}}}" for n in some)
         rows.append((tr("Pitch diameters {names}, mm").format(names=names),
                      "; ".join(number(float(r.kinematics[f"d{n}"].value)) for n in some)))
-    inner = canvas.title(box, tr("Conditions and results of the reducer"))
-    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(r.warnings), box.x1, inner.y1), rows, (84.0,), LARGE)
-    for k, text in enumerate(r.warnings):
-        said = f"{text[0].upper()}{text[1:]}."
-        canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 5.5 - 6 * k), 0.0, said)
+    ruled_table(canvas, canvas.title(box, tr("Conditions and results of the reducer")), rows, (84.0,), LARGE,
+                list(map(sentence, r.warnings)))
 
 
 reducer_points = Table(marked("Velocities of the points"), lambda project, canvas: rows_of_points(project.reducer, canvas), *POINTS)
@@ -242,22 +206,17 @@ def unsigned(ratio: float) -> str:
 
 
 def _lines(r: Reducer) -> Iterator[str]:
-    chosen = {step.name: step.value for step in r.sets[0]}
-    first, second = r.scheme.signs
-    one, *_, four = wheels = r.stage_wheels[0]
+    chosen = {step.name: step for step in r.sets[0]}
+    one, *_, four = r.stage_wheels[0]
     mesh = next(m for m in r.meshes if m.central == one)
-    z = [Quantity(f"z_{{{wheels[k]}}}", r.chosen.stage[k]) for k in ((3, 0) if r.scheme.single else (1, 3, 0, 2))]
-    # Where the carrier drives, the ratio is the reciprocal of a small difference.
-    inner = Quantity(f"i_{{{one}{four}}}^{{H}}", chosen["i14"], digits=7 if r.driver == "carrier" else 4)
-    yield equation(lambda *z: first * second * reduce(mul, z[:len(z) // 2]) / reduce(mul, z[len(z) // 2:]), z, inner)
     enters, leaves = {"sun": (one, "H"), "ring": (four, "H"), "carrier": ("H", one)}[r.driver]
-    ratio = Quantity(f"u_{{{enters}{leaves}}}", chosen["u_stage"])
-    shape: Any = {"sun": lambda i: 1 - i, "ring": lambda i: 1 - 1 / i, "carrier": lambda i: 1 / (1 - i)}[r.driver]
-    yield equation(shape, [inner], ratio)
-    count, simple = r.table.stages, [Quantity(f"z_{{{name}}}", r.data.teeth[name]) for name in reversed(r.simple)]
-    if simple or count > 1:
-        yield equation(lambda u, *z: (abs(u) if count == 1 else abs(u) ** count) * (z[0] / z[1] if z else 1), [ratio, *simple],
-                       Quantity("u", chosen["u"]))
+    # Where the carrier drives, the ratio is the reciprocal of a small difference.
+    inner = Quantity(f"i_{{{one}{four}}}^{{H}}", chosen["i14"].value, digits=7 if r.driver == "carrier" else 4)
+    ratio = Quantity(f"u_{{{enters}{leaves}}}", chosen["u_stage"].value)
+    own = {id(chosen["i14"]): inner, id(chosen["u_stage"]): ratio}
+    own |= {id(chosen["u_planetary"]): ratio} if r.table.stages == 1 else {}
+    whole = [*(["u_planetary"] if r.table.stages > 1 else []), *(["u_simple"] if r.simple else [])]
+    yield from (of_step(chosen[name], own=own) for name in ("i14", "u_stage", *whole, *(["u"] if whole else [])))
     yield from checks_of(r, r.stage(mesh))
     n = {name: Quantity(f"n_{{{link_name(name)}}}", float(r.kinematics[f"n{name}"].value), "1/min")
          for name in (one, four, mesh.carrier)}

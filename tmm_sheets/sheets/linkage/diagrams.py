@@ -14,17 +14,15 @@ from tmm_sheets.construction.readable import CURVE, MAIN
 from tmm_sheets.construction.scale import Scale, handy, times
 from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
-from tmm_sheets.drawing.text_layout import LEAST, needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import NOISE, fixed, is_zero
 from tmm_sheets.remarks import Remark
-from tmm_sheets.sheets.border_solver import BorderNode, Measured, leaf
+from tmm_sheets.sheets.border_solver import Measured
 from tmm_sheets.sheets.components import cycle_graphs, graphs, listed
 from tmm_sheets.sheets.components.cycle_graphs import Column, Curve, Quantity
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
-from tmm_sheets.sheets.linkage.link_marks import indexed, shapes, tell_signs
+from tmm_sheets.sheets.linkage.link_marks import SignedTable, indexed, shapes, tell_signs
 from tmm_sheets.sheets.player import PlanFrame, PlayerStage, extent, pick, together
 from tmm_sheets.words import both, marked, marked_n, tell, tr, tr_in
 
@@ -63,10 +61,9 @@ def motion(project: Project, canvas: Canvas, box: Box, options: Options) -> None
     Points have S, V, a along their straight path, links psi, omega, epsilon; both count from position 0. Those of points are
     positive in the sense in which the motion begins there, those of links counter-clockwise, as in every table.
     """
-    if columns := _moving(project, options):
-        cycle_graphs.draw(project, canvas, box, tr("Kinematic diagrams"), columns)
-        if any(name in project.mechanism.links for name in options.get("of") or project.diagrams):
-            tell_signs(project, canvas, box)
+    kinematic(project, canvas, box, options)
+    if any(name in project.mechanism.links for name in options.get("of") or project.diagrams):
+        tell_signs(project, canvas, box)
 
 
 def _moving(project: Project, options: Options) -> list[Column]:
@@ -89,10 +86,8 @@ def _at_rest(project: Project) -> Remark:
                   {"names": both(project.diagrams)}, len(project.diagrams))
 
 
-def motion_place(project: Project, view: ViewPlace) -> BorderNode | None:
-    """What they need of their place."""
-    columns = _moving(project, view.options)
-    return leaf(view.box, cycle_graphs.need(project, columns), 0.5) if columns else None
+kinematic = cycle_graphs.CycleView(lambda project: tr("Kinematic diagrams"), _moving, 0.5)
+"""The graphs of these diagrams."""
 
 
 def motion_low(project: Project, n: int, view: ViewPlace) -> Iterator[Measured | Remark]:
@@ -103,64 +98,27 @@ def motion_low(project: Project, n: int, view: ViewPlace) -> Iterator[Measured |
     yield from cycle_graphs.low(project, columns, view.box)
 
 
-ROW = 5.6
-"""Height of the rows of a table of motion from which on its title rather has two lines than narrow letters, mm."""
+def _motion(project: Project, options: Options) -> tuple[str, list[list[str]]]:
+    """The values of the kinematic diagrams at the positions, one row each; with ``links`` those of the bars before them.
 
-
-def motion_table(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
-    """The values of the kinematic diagrams at the positions, one row each; with ``links`` those of the bars before them."""
+    Positions of a later turn that repeat the first stand in its rows; the units have a row of their own where there are ``links``.
+    """
     every = [(c.symbol, q.unit, c.at) for column in motion_graphs(project, options) for q in column for c in q.curves]
-    if not every:
-        return
     # The same quantities of one output stand together.
     every.sort(key=lambda row: row[0][1:])
-    beside = _of_bars(project, {symbol for symbol, _, _ in every}) if options.get("links") else []
-    title = tr("Motion of the links") if beside else _of_outputs(len(every))
-    every = [*beside, *every]
-    if any(symbol[0] == "ω" for symbol, _, _ in every):
-        tell_signs(project, canvas, box)
-    left = canvas.title(box, title, spare=box.height - 11.0 - ROW * (len(_rows_of(project)) + 1 + bool(beside)))
-    for digits in (4, 3):
-        rows = _motion_rows(_rows_of(project), every, digits, two=bool(beside))
-        if sum(needs(rows, 2.5, LEAST)) <= left.width:
-            break
-    row = min(left.height / len(rows), 7.0)
-    height = size_in(row) if sum(needs(rows, 3.5, LEAST)) <= left.width else 2.5
-    first = min(12.0, 0.06 * left.width + needs([[line[0]] for line in rows], height)[0])
-    width = (left.width - first) / len(every)
-    widths = widened([first, *[width] * len(every)], rows, height)
-    canvas.table(complex(box.x0, left.y1), widths, rows, row, height, header=2 if beside else 1)
+    beside = _of_bars(project, {symbol for symbol, _, _ in every}) if options.get("links") and every else []
+    title = tr("Motion of the links") if beside else \
+        tr("Motion of the output link") if len(every) == 3 else tr("Motion of the output links")
+    names, units, values = [list(of) for of in zip(*beside, *every, strict=True)] or [[], [], []]
+    columns, same = [graphs.column(v) for v in values], project.cycle.drawn
+    heads = [[tr("No."), *names], ["", *units]] if beside else \
+        [[tr("No."), *map("{}, {}".format, names, units)]]
+    labels = same if len(same) < len(project.cycle.labels) else tuple(enumerate(project.cycle.labels))
+    return title, [*heads, *([label, *(c[i] for c in columns)] for i, label in labels)]
 
 
-def _of_outputs(columns: int) -> str:
-    """Title of the table of the outputs with so many columns."""
-    return tr("Motion of the output link") if columns == 3 else tr("Motion of the output links")
-
-
-def motion_table_sizes(project: Project, canvas: Canvas, options: Options) -> list[tuple[float, float]]:
-    """Places that the table can do with, mm: rows of 7 mm to 4.6 mm, columns of 26 mm to 16 mm."""
-    if not motion_graphs(project, options):
-        return []
-    rows, columns = len(_rows_of(project)) + 1, 3 * len(project.diagrams)
-    sizes = ((26.0, 7.0), (22.0, 7.0), (20.0, ROW), (16.0, 4.6))
-    # As wide as its title is in letters of the height that the others have, if there is room.
-    titled = [letter(_of_outputs(columns), height).width + 2.0 for height in (5.0, 3.5)]
-    return [(max(12.0 + wide * columns, least), 11.0 + row * rows) for wide, row in sizes for least in titled]
-
-
-def _rows_of(project: Project) -> tuple[tuple[int, str], ...]:
-    """Positions of the table of motion: those of a later turn that repeat the first stand in its rows."""
-    same = project.cycle.drawn
-    return same if len(same) < len(project.cycle.labels) else tuple(enumerate(project.cycle.labels))
-
-
-def _motion_rows(labels: Iterable[tuple[int, str]], every: list[tuple[str, str, graphs.Floats]], digits: int, *,
-                 two: bool) -> list[list[str]]:
-    """Rows of the table of motion with so many digits; the units stand in a row of their own if there are ``two`` of headings."""
-    heads = [[tr("No."), *(symbol for symbol, _, _ in every)], ["", *(unit for _, unit, _ in every)]] if two else \
-        [[tr("No."), *(f"{symbol}, {unit}" for symbol, unit, _ in every)]]
-    columns = [graphs.column(values, digits) for _, _, values in every]
-    return [*heads, *([label, *(c[i] for c in columns)] for i, label in labels)]
+motion_table = SignedTable(_motion)
+"""The table of the motion of the outputs."""
 
 
 def _of_bars(project: Project, known: Collection[str]) -> list[tuple[str, str, graphs.Floats]]:
@@ -182,20 +140,11 @@ def _of_bars(project: Project, known: Collection[str]) -> list[tuple[str, str, g
     return found
 
 
-def balancing(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
-    """Balancing moment over the whole cycle by kinetostatics, positive in the sense of rotation; its mean drives the machine."""
-    if project.driver is not None:
-        raise CannotBuild(*map(tell, _NO_MOMENT))
-    cycle_graphs.draw(project, canvas, box, tr("Graph of the balancing moment"), [balancing_graph(project)])
-
-
-def balancing_low(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
-    """The graph on sheet ``n``, where it is too low; an offered one has a size in which it is not."""
-    return cycle_graphs.low(project, [] if project.driver is not None else [balancing_graph(project)], view.box)
-
-
 def balancing_graph(project: Project) -> Column:
-    """The graph of the balancing moment, with the constant one."""
+    """The graph of the balancing moment, with the constant one; CannotBuild for a crank that is driven by a force."""
+    if project.driver is not None:
+        raise CannotBuild(tell("the diagram of the balancing moment needs a crank driven by a moment"),
+                          tell('write kind = "moment" in [balancing]'))
     every, step, course = project.course.turned, project.study.balance["M"], project.course.balance["M"]
     # The flywheel's construction has the constant moment already, a little apart from the mean of this curve; without friction.
     rubbing = project.study.forces.friction is not None
@@ -210,52 +159,25 @@ def balancing_graph(project: Project) -> Column:
     return (Quantity("graph-M", sign, tr("N·m"), (curve,), level=(name, float(mean.value))),)
 
 
-def balancing_sizes(project: Project, canvas: Canvas, options: Options) -> tuple[tuple[float, float], ...]:
-    """Sizes that the graph can do with, mm; none for a crank that is driven by a force."""
-    return cycle_graphs.sizes(project, balancing_graph(project), GRAPH_SIZES) if project.driver is None else ()
+balancing = cycle_graphs.CycleView(lambda project: tr("Graph of the balancing moment"),
+                                   lambda project, options: [balancing_graph(project)], wanted=GRAPH_SIZES)
+"""Balancing moment over the whole cycle by kinetostatics, positive in the sense of rotation; its mean drives the machine."""
 
 
-def balancing_table_sizes(project: Project, canvas: Canvas, options: Options) -> list[tuple[float, float]]:
-    """Places that the table can do with, mm; none for a crank that is driven by a force."""
+def _balancing(project: Project, options: Options) -> tuple[str, list[list[str]]]:
+    """The balancing moment at the positions by kinetostatics and by Zhukovsky's lever; none for a crank driven by a force."""
+    title, study = tr("Balancing moment, N·m"), project.study
     if project.driver is not None:
-        return []
-    rows = (len(project.cycle.labels) + 1) // 2 + 1
-    upright = listed.upright_sizes(tr(BALANCING), _balancing(project), options["widest"]) if "widest" in options else []
-    return [*upright, *((width, 11.0 + row * rows) for width, row in ((170.0, 7.5), (150.0, 6.0), (130.0, 5.0)))]
-
-
-def balancing_table(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
-    """The balancing moment at the positions by kinetostatics and by Zhukovsky's lever, in columns side by side.
-
-    In one below the other in a place that is higher than wide.
-    """
-    if project.driver is not None:
-        raise CannotBuild(*map(tell, _NO_MOMENT))
-    heads, *cells = _balancing(project)
-    if box.height > box.width:
-        listed.draw_upright(canvas, box, tr(BALANCING), [heads, *cells])
-        return
-    left = canvas.title(box, tr(BALANCING))
-    half = (len(cells) + 1) // 2
-    cells += [["", "", ""]] * (2 * half - len(cells))
-    rows = [heads + heads, *(cells[i] + cells[half + i] for i in range(half))]
-    width = box.width / 2 - 10.0
-    graphs.table_in(canvas, left, rows, 7.5, [10.0, 0.58 * width, 0.42 * width] * 2)
-
-
-def _balancing(project: Project) -> list[list[str]]:
-    """Heads and cells of the table of the balancing moment: a row for each position."""
-    study = project.study
+        return title, [[tr("No.")]]
     by_statics, by_lever = (_row(study.balance[name], study.turned) for name in ("M", "M_р"))
     largest = np.max(np.abs(by_statics))
-    return [[tr("No."), tr("Force analysis"), tr("Lever")],
-            *([label, *graphs.column([a, b, largest])[:2]]
-              for label, a, b in zip(project.cycle.labels, by_statics, by_lever, strict=True))]
+    return title, [[tr("No."), tr("Force analysis"), tr("Lever")],
+                   *([label, *graphs.column([a, b, largest])[:2]]
+                     for label, a, b in zip(project.cycle.labels, by_statics, by_lever, strict=True))]
 
 
-BALANCING = marked("Balancing moment, N·m")
-_NO_MOMENT = (marked("the diagram of the balancing moment needs a crank driven by a moment"),
-              marked('write kind = "moment" in [balancing]'))
+balancing_table = listed.Upright(_balancing)
+"""The table of these moments."""
 
 
 def _quantities(project: Project, outputs: list[Output], units: Iterable[tuple[str, str, str, float]]) -> Column:
@@ -345,26 +267,21 @@ HAIR = 1e-9
 
 def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Magnitudes of the forces or of the moments that are not given as pressures, over the angle of the crank."""
-    if not (column := load_graph(project)):
-        return
-    shown = _shown(project)
-    names = {f.name for f in shown}
-    taken = all((*(f.accepted for f in project.variant.force if f.name in names),
-                 *(m.accepted for m in project.variant.moment if m.name in names)))
-    cycle_graphs.draw(project, canvas, box, tr("Technological load (taken)") if taken else tr("Technological load"), [column])
-    if (said := _many_strokes(project, shown)) is not None:
+    loads(project, canvas, box, options)
+    if (said := _many_strokes(project, _shown(project))) is not None:
         canvas.note(box, said)
 
 
-def place(project: Project, view: ViewPlace) -> BorderNode | None:
-    """What the graph needs of its place."""
-    column = load_graph(project)
-    return leaf(view.box, cycle_graphs.need(project, [column])) if column else None
+def _of_loads(project: Project) -> str:
+    """Title of the graph, which says if none of the loads is given by the task."""
+    names = {f.name for f in _shown(project)}
+    taken = all((*(f.accepted for f in project.variant.force if f.name in names),
+                 *(m.accepted for m in project.variant.moment if m.name in names)))
+    return tr("Technological load (taken)") if taken else tr("Technological load")
 
 
-def low(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
-    """The graph on sheet ``n``, where it is too low."""
-    return cycle_graphs.low(project, [load_graph(project)], view.box)
+loads = cycle_graphs.CycleView(_of_loads, lambda project, options: [column] if (column := load_graph(project)) else [])
+"""The graph of these loads."""
 
 
 def load_graph(project: Project) -> Column:

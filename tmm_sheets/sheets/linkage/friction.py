@@ -6,8 +6,6 @@ that deviates from it by the angle of friction; both the motion of the one link 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from functools import cache
 from math import ceil, degrees, inf
 from operator import mul
 from typing import TYPE_CHECKING, Any
@@ -22,8 +20,8 @@ from tmm_sheets.drawing.lettering import size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, is_zero, number
-from tmm_sheets.sheets.border_solver import BorderNode, Measured, Need, leaf, reaching, rows
-from tmm_sheets.sheets.components import cycle_graphs, graphs
+from tmm_sheets.sheets.border_solver import BorderNode, leaf, reaching, rows, stepped
+from tmm_sheets.sheets.components import cycle_graphs, graphs, listed
 from tmm_sheets.sheets.linkage import diagrams, link_marks
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
 from tmm_sheets.sheets.player import PlanFrame, PlayerStage, fit_frame, play, ratio, stage, standard
@@ -285,7 +283,7 @@ def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
                          number(abs(complex(of.sliding[index].at(k))), 4), power])
     left = canvas.title(box, tr("Friction in the pairs"))
     said = _balance(project, of, k)
-    place = graphs.table_in(canvas, left, rows, ROWS[0], under=7.0 * len(said))
+    place = listed.table_in(canvas, left, rows, ROWS[0], under=7.0 * len(said))
     canvas.lines(complex(box.x0 + 2.0, place.y0 - 6.5), said, 7.0, size_for(said, box.width - 4.0, 3.5))
 
 
@@ -302,7 +300,7 @@ def _balance(project: Project, of: Friction, k: int) -> list[str]:
     return lines
 
 
-def positions(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def _in_positions(project: Project, options: dict[str, Any]) -> tuple[str, list[list[str]]]:
     """Sizes of the reactions with friction in all positions, what drives the crank, and the power of friction."""
     of, study = _friction(project), project.study
     n, forces = len(study.labels), study.forces
@@ -316,19 +314,11 @@ def positions(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     rows = [[tr("No."), *(name for name, _ in columns)]]
     cells = [graphs.column(values, 4) for _, values in columns]
     rows += [[label, *(column[i] for column in cells)] for i, label in enumerate(study.labels)]
-    left = canvas.title(box, tr("Reactions with friction in all positions"))
-    graphs.table_in(canvas, left, rows, ROWS[1], [9.0])
+    return tr("Reactions with friction in all positions"), rows
 
 
-def power_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[tuple[float, float], ...]:
-    """Sizes that the graph of the power of friction can do with, mm; none without friction."""
-    rubbing = project.study.forces.friction is not None
-    return cycle_graphs.sizes(project, power_graph(project), diagrams.GRAPH_SIZES) if rubbing else ()
-
-
-def power(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Power of friction in all pairs over the whole cycle."""
-    cycle_graphs.draw(project, canvas, box, tr("Power of friction in the pairs"), [power_graph(project)])
+positions = listed.Upright(_in_positions)
+"""The table of these sizes."""
 
 
 def power_graph(project: Project) -> cycle_graphs.Column:
@@ -341,6 +331,11 @@ def power_graph(project: Project) -> cycle_graphs.Column:
     return (cycle_graphs.Quantity("graph-N", sign, unit, (cycle_graphs.Curve("", step.path, every, *values),)),)
 
 
+power = cycle_graphs.CycleView(lambda project: tr("Power of friction in the pairs"),
+                               lambda project, options: [power_graph(project)], 0.5, diagrams.GRAPH_SIZES)
+"""Power of friction in all pairs over the whole cycle."""
+
+
 def mechanism_place(project: Project, view: ViewPlace) -> BorderNode:
     """The mechanism with the forces of"""
     return leaf(view.box, reaching(view.box, *scheme(project), AROUND, (150.0, 90.0)))
@@ -348,21 +343,7 @@ def mechanism_place(project: Project, view: ViewPlace) -> BorderNode:
 
 def pairs_place(project: Project, view: ViewPlace) -> BorderNode:
     """A picture of each pair with friction."""
-    @cache
-    def in_place(width: int, height: int) -> float:
-        return pairs_area(project, width, height)
-
-    return leaf(view.box, Need(least=(200.0, 120.0), drawn=lambda w, h: in_place(int(w), int(h))), 1.5)
-
-
-def power_place(project: Project, view: ViewPlace) -> BorderNode:
-    """The power lost over the turn."""
-    return leaf(view.box, cycle_graphs.need(project, [power_graph(project)]), 0.5)
-
-
-def power_low(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
-    """The graph of that power on sheet ``n``, where it is too low."""
-    return cycle_graphs.low(project, [power_graph(project)], view.box)
+    return stepped(view, (200.0, 120.0), lambda width, height: pairs_area(project, width, height), 1.5)
 
 
 def table_place(project: Project, view: ViewPlace) -> BorderNode:

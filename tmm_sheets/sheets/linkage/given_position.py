@@ -50,7 +50,7 @@ def values(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     for text, rows in tables:
         canvas.text(complex(box.centre.real, y - 5.5), text, 3.5, "centre")
         first = (0.12 if len(rows[0]) > 3 else 0.3) * box.width
-        y = graphs.table_in(canvas, Box(box.x0, y - title - row * len(rows), box.x1, y - title), rows, row, [first]).y0
+        y = listed.table_in(canvas, Box(box.x0, y - title - row * len(rows), box.x1, y - title), rows, row, [first]).y0
 
 
 def values_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
@@ -205,30 +205,8 @@ MOST = 14
 Columns = list[tuple[str, Any]]
 
 
-def accelerations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the table of accelerations can do with, mm."""
-    return _sizes(project, *_accelerations(project))
-
-
-def accelerations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def of_points_and_links(project: Project) -> Columns:
     """Accelerations of the moving points, m/s^2, and angular ones of the links, s^-2, at all positions."""
-    title, columns = _accelerations(project)
-    _table(project, canvas, box, title, columns)
-    if any(name.startswith("ε") for name, _ in columns):
-        link_marks.tell_signs(project, canvas, box)
-
-
-def reactions_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the table of reactions can do with, mm."""
-    return _sizes(project, *_reactions(project))
-
-
-def reactions(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Magnitudes of the reactions in all pairs, N, at all positions."""
-    _table(project, canvas, box, *_reactions(project))
-
-
-def _accelerations(project: Project) -> tuple[str, Columns]:
     acc = project.study.accelerations
     sizes = [(f"a_{{{name}}}", np.abs(step.value)) for name, step in acc.points.items() if np.ndim(step.value)]
     found: Columns = [(name, v) for name, v in sizes if not np.allclose(v, v[0])]  # that of the crank pin is the same everywhere
@@ -237,32 +215,31 @@ def _accelerations(project: Project) -> tuple[str, Columns]:
     turning = [(f"ε_{link}", np.real(step.value)) for link, step in acc.epsilon.items() if np.ndim(step.value) and link != crank]
     size = max((float(np.nanmax(np.abs(v))) for _, v in turning), default=0.0) + speed**2  # where none but rounding turns them
     found += [(name, v) for name, v in turning if not is_zero(np.abs(v).max(), size)]
-    return tr("Accelerations of the points, m/s², and of the links, s^{−2}"), found
+    return found
 
 
-def _reactions(project: Project) -> tuple[str, Columns]:
+def of_pairs(project: Project) -> Columns:
+    """Magnitudes of the reactions in all pairs, N, at all positions."""
     pairs: dict[frozenset[str], tuple[str, Any]] = {}
     for name, step in project.study.forces.reactions.items():
         # A pair has one reaction and its opposite: the first that the force analysis finds stands for both.
         links = frozenset(name[1:].split(",") if "," in name else name[1:])
         pairs.setdefault(links, (link_marks.indexed(name), np.abs(step.value)))
-    return tr("Reactions in the pairs, N"), [pair for pair in pairs.values() if np.ndim(pair[1])]
+    return [pair for pair in pairs.values() if np.ndim(pair[1])]
 
 
-def _cells(project: Project, columns: Columns, digits: int) -> list[list[str]]:
-    numbers = [graphs.column(values, digits) for _, values in columns]
-    return [[tr("No."), *(name for name, _ in columns)],
+def _cells(project: Project, columns: Columns) -> Rows:
+    """Heads, and a row for each drawn position; no column of too many, or of such that have no number somewhere."""
+    told = columns if len(columns) <= MOST and all(np.isfinite(values).all() for _, values in columns) else []
+    numbers = [graphs.column(values) for _, values in told]
+    return [[tr("No."), *(name for name, _ in told)],
             *([label, *(column[i] for column in numbers)] for i, label in project.cycle.drawn)]
 
 
-def _sizes(project: Project, title: str, columns: Columns) -> list[tuple[float, float]]:
-    if not 0 < len(columns) <= MOST or not all(np.isfinite(values).all() for _, values in columns):
-        return []
-    return listed.upright_sizes(title, _cells(project, columns, 4))
-
-
-def _table(project: Project, canvas: Canvas, box: Box, title: str, columns: Columns) -> None:
-    listed.draw_upright(canvas, box, title, _cells(project, columns, 4))
+reactions = listed.Upright(lambda project, options: (tr("Reactions in the pairs, N"), _cells(project, of_pairs(project))))
+accelerations = link_marks.SignedTable(lambda project, options: (
+    tr("Accelerations of the points, m/s², and of the links, s^{−2}"), _cells(project, of_points_and_links(project))))
+"""Tables of reactions and of accelerations at all positions."""
 
 
 COLUMNS = 7

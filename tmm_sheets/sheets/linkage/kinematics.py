@@ -12,11 +12,10 @@ import numpy as np
 from tmm_sheets.construction.scale import Scale, handy, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import SMALLEST, Align, Canvas
-from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.ink import segment_inside
-from tmm_sheets.drawing.ink_index import STRONG, distance
+from tmm_sheets.drawing.ink_index import distance
 from tmm_sheets.drawing.lettering import letter, size_for
-from tmm_sheets.drawing.marks import Box, Points, Text
+from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.text_layout import TOGETHER
 from tmm_sheets.numbers import is_zero, number
 from tmm_sheets.sheets.border_solver import LETTERED, VECTOR
@@ -26,7 +25,6 @@ from tmm_sheets.sheets.player import SHORTEST, PlanFrame, PlayerStage, joined, p
 from tmm_sheets.words import tr, tr_in
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.step import Segment
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.methods.linkage.cycle import Cycle
     from tmm_sheets.methods.linkage.positions import Positions
@@ -355,12 +353,10 @@ def _strokes(project: Project, s: PlayerStage) -> None:
     last = cycle.world(cycle.turned[count] if count else cycle.strokes.end)
     working, idle = tr_in("angle of the crank", "φ_w"), tr_in("angle of the crank", "φ_i")
     pivot, end = s.at(c.pivot), first + cycle.sense * 2 * pi
-    arcs = [(min(a, b), max(a, b), radius) for a, b in ((first, last), (last, end))]
     # The sign of the idle angle stands near its beginning: about its middle the links of many positions crowd.
-    for sign, arc, at in zip((working, idle), arcs, (0.5, 0.2 if cycle.sense > 0 else 0.8), strict=True):
-        text = f"{sign} = {number(round(degrees(arc[1] - arc[0]), 6))}°"
-        share = _free_share(s.canvas, pivot, arcs, arc, text, at)
-        s.canvas.angle_mark(pivot, *arc, text, 3.5, share)
+    for sign, (a, b), at in zip((working, idle), ((first, last), (last, end)), (0.5, 0.2), strict=True):
+        text = f"{sign} = {number(round(degrees(abs(b - a)), 6))}°"
+        s.canvas.angle_mark(pivot, min(a, b), max(a, b), radius, text, 3.5, at if b > a else 1 - at)
 
 
 def _named_angles(project: Project, s: PlayerStage) -> None:
@@ -373,7 +369,6 @@ def _named_angles(project: Project, s: PlayerStage) -> None:
     pivot, start = here.at(c.pivot), float(cycle.world(cycle.turned[0]))
     angles = {k: float(plan[f"φ_{k}k"].value) for k in (1, 2)}
     longer = max(angles, key=lambda k: abs(angles[k]))
-    arcs: dict[int, _Arc] = {}
     for k, angle in angles.items():
         name = f"{c.pin}_{k}k"
         for end in (c.pivot, far):
@@ -381,45 +376,11 @@ def _named_angles(project: Project, s: PlayerStage) -> None:
         here.dot(name, 0.8, "main")
         here.letters(name, f"{c.pin}_{{{k}k}}", here.at(name) - pivot, gap=1.5)
         # The shorter arc lies outside: each has a part with no other beyond it.
-        end_at = start + cycle.sense * angle
-        arcs[k] = min(start, end_at), max(start, end_at), c.length / s.frame.mu[1] + (9.0 if k == longer else 14.0)
-    for k, (lo, hi, radius) in arcs.items():
-        text = f"φ_{{{k}k}} = {number(round(degrees(angles[k]), 2), 5)}°"
-        share = _free_share(s.canvas, pivot, list(arcs.values()), arcs[k], text)
+        lo, hi = sorted((start, start + cycle.sense * angle))
+        text = f"φ_{{{k}k}} = {number(round(degrees(angle), 2), 5)}°"
+        radius = c.length / s.frame.mu[1] + (9.0 if k == longer else 14.0)
+        share = 0.5 if k == longer else 0.5 + 0.2 * cycle.sense  # beyond the link in the analysed position
         here.pen(f"φ_{k}k", "dimension").angle_mark(pivot, lo, hi, radius, text, share=share)
-
-
-_Arc = tuple[float, float, float]
-"""Of an arc: from, to, rad, and its radius, mm."""
-
-
-CROSSED = 20
-"""Millimetres of lines under a number up to which it finds a place beside them by itself."""
-
-
-def _free_share(canvas: Canvas, centre: complex, arcs: list[_Arc], own: _Arc, text: str, wanted: float | None = None) -> float:
-    """Where along its arc the number of an angle stands over least and within its view; where it is ``wanted`` if that will do."""
-    place = canvas.parts[-1].box
-    marks = canvas.marks[canvas.parts[-1].first:]
-    thick = [mark for mark in marks if not isinstance(mark, Text) and mark.style in STRONG]
-    drawn = [centre + radius * np.exp(1j * np.arange(lo, hi, 1 / radius)) for lo, hi, radius in arcs]
-    anchors = [label.anchor for label in canvas.labels] * 4
-    ink = np.concatenate([dense(marks, 1.0), *[dense(thick, 1.0)] * 4, *drawn * (8 if wanted is None else 2),
-                          np.array(anchors, complex)])
-    laid = letter(text, 3.5)
-    half = complex(laid.width / 2 + 1.0, (laid.ascent + laid.descent) / 2 + 1.0)
-
-    def over(share: Any) -> tuple[int, float]:
-        u = complex(np.exp(1j * (own[0] + share * (own[1] - own[0]))))
-        at = centre + (own[2] + 1.0) * u + complex(half.real * u.real, half.imag * u.imag)
-        off = ink - at
-        out = 0 if place.contains(at - half) and place.contains(at + half) else len(ink)
-        covered = int(((np.abs(off.real) < half.real) & (np.abs(off.imag) < half.imag)).sum())
-        return covered + out, abs(share - (0.5 if wanted is None else wanted))
-
-    if wanted is not None and over(wanted)[0] <= CROSSED:
-        return wanted
-    return float(min(np.linspace(0.06, 0.94, 45), key=over))
 
 
 def _force_graph(project: Project, s: PlayerStage, box: Box, below: bool) -> None:
@@ -621,26 +582,11 @@ def _vectors(s: PlayerStage, size: float, symbols_at: bool) -> dict[tuple[str, s
             continue
         s.vector(seg.tail, seg.head)
         if symbols_at:
-            s.letters(seg.head, seg.symbol, 1j * (b - a), at=s.frame(_place_of_sign(s, seg)))
+            # No shorter vector from the same point covers the place of its sign.
+            along = [(complex(s.value(other.head)) - a) / (b - a) for other in s.plan.segments if other.tail is seg.tail]
+            covered = max((z.real for z in along if abs(z.imag) < 1e-6 and z.real < 0.95), default=0.0)
+            s.letters(seg.head, seg.symbol, 1j * (b - a), at=s.frame(a + (1 + max(covered, 0.0)) / 2 * (b - a)))
     return tiny
-
-
-def _place_of_sign(s: PlayerStage, seg: Segment) -> complex:
-    """Where the sign of a vector stands: where no shorter vector from the same point covers it, off the vectors it crosses."""
-    a, b = complex(s.value(seg.tail)), complex(s.value(seg.head))
-    others = [(complex(s.value(other.tail)), complex(s.value(other.head))) for other in s.plan.segments if other is not seg]
-    along = [(p, q) for p, q in others if abs(((q - p) * np.conj(b - a)).imag) < 1e-6 * abs(b - a) * abs(q - p)]
-    size = abs(b - a)
-    covered = [q for p, q in along if abs(p - a) < 1e-9 * size and 0 < ((q - a) * np.conj(b - a)).real < 0.95 * size**2]
-    begin = max(covered, key=lambda z: abs(z - a), default=a)
-    across = [line for line in others if line not in along]
-
-    def room(t: float) -> float:
-        z = begin + t * (b - begin)
-        return min((float(distance(np.array([p]), np.array([q]), z)[0]) for p, q in across), default=size)
-
-    best = max((0.5, 0.42, 0.58, 0.34, 0.66), key=lambda t: min(room(t), 0.08 * size))
-    return begin + best * (b - begin)
 
 
 def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

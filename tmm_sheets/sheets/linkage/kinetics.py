@@ -15,10 +15,10 @@ from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import ARROW, KEPT_OFF, Align, Canvas
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.text_layout import TOGETHER, widened, wrapped
+from tmm_sheets.drawing.text_layout import TOGETHER, wrapped
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, decimals_for, fixed, is_zero, number
-from tmm_sheets.sheets.components import flat_crossings
+from tmm_sheets.sheets.components import flat_crossings, listed
 from tmm_sheets.sheets.linkage import link_marks, linkage_sizes
 from tmm_sheets.sheets.linkage.kinetic_frames import (
     AROUND,
@@ -62,7 +62,6 @@ if TYPE_CHECKING:
     from tmm_sheets.mechanism.groups.contexts import ForcePlan
     from tmm_sheets.mechanism.model import StructuralGroup
     from tmm_sheets.methods.linkage.forces import Kinetostatics
-    from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
 
 ALONG, SAME = 0.05, 0.01
@@ -134,7 +133,7 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     link_marks.draw(s, pos, "main", g.links)
     for point in points:
         s.letters(point, link_marks.indexed(point.name), 1 - 0.5j if point.name in pos.mechanism.fixed else 0j, gap=2.8)
-    _link_numbers(s, pos, drawn)
+    link_marks.number_links(s, pos, g.links, 0.3)  # the middles of bars are left to forces and arms
     for name in centres:
         symbols.centre_of_mass(s.pen(name, "symbol"), s.at(name))
     draw_arms(s, about, with_arms(project, g, shown))
@@ -167,14 +166,6 @@ def _link_couples(project: Project, s: PlayerStage, drawn: Iterable[link_marks.S
 def _turning(s: PlayerStage, at: complex, radius: float, towards: complex, couple: Couple) -> None:
     """Arrow of a couple."""
     symbols.rotation_arrow(s.pen(couple.step, "symbol"), at, radius, towards, couple.value, couple.symbol)
-
-
-def _link_numbers(s: PlayerStage, pos: Positions, drawn: Iterable[link_marks.Shape]) -> None:
-    """Numbers of the links, near the first ends of bars: their middles are left to forces and arms."""
-    for shape in drawn:
-        names = link_marks.along_bar(s, pos, shape) if shape.bar else (str(shape.block),)
-        a, b = s.at(pos.points[names[0]]), s.at(pos.points[names[-1]])
-        s.letters(pos.directions[shape.link], shape.link, 1 + 0.3j, 5.0, 2.0 if shape.bar else 6.5, a + 0.3 * (b - a))
 
 
 def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int, scale: Scale) -> None:
@@ -436,7 +427,6 @@ def _crank_couples(project: Project, s: PlayerStage, box: Box, at: complex, away
 def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Zhukovsky's lever: the velocity plan turned by 90 degrees with every force and its arm."""
     k, lv = project.force_index, project.study.lever
-    points = [complex(step.at(k)) for step in lv.points.values()]
     shown = on_lever(project, k)
     frame = fit_frame(project, canvas, "lever", "μ_V", tr("(m/s)/mm"), *lever_scheme(project, k, shown), box.inset(*LEVER))
     plain: Scale | None = canvas.scales.get("velocities")
@@ -458,7 +448,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     if lv.contact is not None and project.driver is not None and lv.contact not in lv.points.values():
         play(s, [lv.contact], "axis")
         s.letters(lv.contact, lv.contact.name, gap=1.2)
-    draw_arms(s, 0j, shown, points=[frame(z) for z in points])
+    draw_arms(s, 0j, shown, points=[complex(s.at(step)) for step in lv.points.values()])
     draw_forces(s, shown)
 
 
@@ -505,8 +495,8 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
             [tr("Force analysis: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(kinetic, decimals)],
             [tr("Zhukovsky lever: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(hung, decimals)],
             [tr("Difference, %"), number(difference, 2, 100.0)]]
-    row, width = min(box.height / len(rows), 9.0), min(box.width, 210.0)
-    canvas.table(complex(box.x0, box.y1), widened([width * 0.66, width * 0.34], rows, 3.5), rows, row, 3.5)
+    width = min(box.width, 210.0)
+    listed.table_in(canvas, box, rows, 9.0, [width * 0.66, width * 0.34])
     if force and kinetic < 0 and project.mechanism.drive is not None:
         canvas.note(box, tr("{quantity} < 0: it holds the input back").format(quantity=sign))
     elif force and kinetic < 0:

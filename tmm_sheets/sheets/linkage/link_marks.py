@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Points
+from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.player import PlayerStage
 from tmm_sheets.words import tr
 
@@ -148,19 +149,30 @@ def tell_signs(project: Project, canvas: Canvas, box: Box) -> None:
         canvas.note(box, said)
 
 
+class SignedTable(listed.Upright):
+    """An upright table that says what the signs of its angular velocities and accelerations mean."""
+
+    def __call__(self, project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+        """Draw it."""
+        title, rows = self.of(project, options)
+        listed.draw_upright(canvas, box, title, rows)
+        if any(name[:1] in ("ω", "ε") for name in rows[0]):
+            tell_signs(project, canvas, box)
+
+
 def crank_pins(pos: Positions) -> tuple[str, ...]:
     """Points of the crank that carry groups, its pin first."""
     return shapes(pos)[0].bar[1:]
 
 
-def number_links(s: PlayerStage, pos: Positions) -> None:
-    """Numbers of the links beside the middles of their bars and at their blocks."""
-    for shape in shapes(pos):
+def number_links(s: PlayerStage, pos: Positions, only: Collection[str] | None = None, share: float = 0.0) -> None:
+    """Numbers of the links beside their bars, at this ``share`` of them or about the middle, and at their blocks."""
+    for shape in (shape for shape in shapes(pos) if only is None or shape.link in only):
         link = pos.directions[shape.link]
         if shape.bar:
             names = along_bar(s, pos, shape)
             a, b = s.at(pos.points[names[0]]), s.at(pos.points[names[-1]])
-            s.letters(link, shape.link, 1j * (b - a), 5.0, 1.4, a + (0.62 if len(names) > 2 else 0.5) * (b - a))
+            s.letters(link, shape.link, 1j * (b - a), 5.0, 1.4, a + (share or (0.62 if len(names) > 2 else 0.5)) * (b - a))
         elif shape.block is not None:
             s.letters(link, shape.link, complex(s.value(link)), 5.0, 6.0, s.at(pos.points[shape.block]))
 

@@ -17,8 +17,8 @@ import numpy as np
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import size_for
 from tmm_sheets.drawing.marks import Box, Points
+from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.linkage import link_marks
 from tmm_sheets.sheets.player import PlanFrame, PlayerStage, fit_frame, play, stage
 from tmm_sheets.words import tr
@@ -98,10 +98,7 @@ def sizes(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     right = Box(left.x1 + 4.0, box.y0, box.x1, box.y1)
     draw = {"quick return": _quick_return, "engine": _engine, "geneva": figure}[project.variant.synthesis.kind]
     draw(project, canvas, left)
-    inside = canvas.title(right, tr("Geometric synthesis"))
-    step = min(LINE, inside.height / len(lines))
-    height = size_for(lines, right.width, 3.5)
-    canvas.lines(complex(right.x0, inside.y1 - 0.7 * step), lines, step, height)
+    listed.draw_lines(canvas, right, tr("Geometric synthesis"), lines)
 
 
 def sizes_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
@@ -221,11 +218,7 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     drawn = [shape for shape in link_marks.shapes(pos) if shape.link in g.links]
     for name in dict.fromkeys(n for shape in drawn for n in (*shape.bar, shape.block or "") if n):
         s.letters(name, link_marks.indexed(name), 1 - 0.5j if name in pos.mechanism.fixed else 0j, gap=symbols.HINGE + 1.2)
-    for shape in drawn:
-        ends = link_marks.along_bar(s, pos, shape) if shape.bar else (str(shape.block),)
-        a, b = s.at(pos.points[ends[0]]), s.at(pos.points[ends[-1]])
-        s.letters(pos.directions[shape.link], shape.link, 1j * (b - a) if shape.bar else 1 + 1j, 5.0, 1.4 if shape.bar else 6.0,
-                  a + 0.4 * (b - a))
+    link_marks.number_links(s, pos, g.links, 0.4)
 
 
 def _locus(s: PlayerStage, there: list[tuple[Step, ...]], found: Step) -> None:
