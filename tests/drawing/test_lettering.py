@@ -189,3 +189,10 @@ def test_overbar_covers_its_letter_and_joins_the_next():
     assert joined.a.imag == joined.b.imag > 5.0
     assert len(letter(f"a{BAR} + b{BAR}", 5.0).bars) == 2
     assert one.ascent > bar.a.imag
+
+
+@pytest.mark.parametrize("asked", [[5, 5.0], [5.0, 5]])
+def test_heights_read_alike_whichever_was_asked_for_first(asked):
+    letter.cache_clear()
+    for height in asked:
+        assert [repr(run.height) for run in letter("abc", height).runs] == ["5.0"]

@@ -108,7 +108,8 @@ def head(kind: str, owner: str, layer: str, more: str = "") -> str:
 
 def flat(code: int, z: complex) -> str:
     """Tags of a point without its z = 0, which is implied: lettering has thousands of them."""
-    return f"{code}\n{short(z.real)}\n{code + 10}\n{short(z.imag)}\n"
+    # As by short: a function for each number would be called more often than all others.
+    return f"{code}\n{round(z.real, 4):.12g}\n{code + 10}\n{round(z.imag, 4):.12g}\n"
 
 
 def place(code: int, z: complex) -> str:

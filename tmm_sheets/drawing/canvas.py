@@ -183,6 +183,7 @@ class Canvas:
     windows : numbers of the circles of enlarged details
     numbers : those at axes, which make way for lines when all are drawn
     inked : cells of ink by part, cached while views are added: earlier marks do not change
+    corners : dense corners by the number of plans placed, cached likewise
     """
 
     marks: list[Mark] = field(default_factory=list)
@@ -201,6 +202,7 @@ class Canvas:
     windows: set[int] = field(default_factory=set)
     numbers: list[AxisNumber] = field(default_factory=list)
     inked: dict[Any, npt.NDArray[np.bool_]] = field(default_factory=dict)
+    corners: dict[int, list[Any]] = field(default_factory=dict)
 
     def begin(self, box: Box, title: str = "", draw: str = "") -> None:
         """Begin a view, or without ``draw`` a part of the current one with a box of its own."""

@@ -9,7 +9,7 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.ink_index import sample
 from tmm_sheets.drawing.marks import Drawing, Line, Mark, Points, Text, flat
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_boxes import text_box, text_boxes
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
 """Inside of the frame of an A1 sheet, mm."""
@@ -52,14 +52,18 @@ def _outline(mark: Mark) -> Points:
 
 def dense(marks: Iterable[Mark], step: float) -> Points:
     """Points along marks, or round their lettering, complex (n,), at most ``step`` mm apart."""
-    straight, others = list[tuple[complex, complex]](), list[Points]()  # most are lines: quicker without an array for each
-    for mark in marks:
+    straight, texts, others = list[tuple[complex, complex]](), list[Text](), list[Points]()
+    for mark in marks:  # most are lines and lettering: quicker without an array for each
         if isinstance(mark, Line):
             straight.append((mark.a, mark.b))
+        elif isinstance(mark, Text):
+            texts.append(mark)
         else:
-            others.append(_outline(mark))
+            others.append(flat(mark, 2.0))
     a, b = np.array(straight, complex).reshape(-1, 2).T
-    return sample(np.concatenate((a, *(z[:-1] for z in others))), np.concatenate((b, *(z[1:] for z in others))), step)
+    corners = text_boxes(texts)
+    return sample(np.concatenate((a, corners[:, :-1].ravel(), *(z[:-1] for z in others))),
+                  np.concatenate((b, corners[:, 1:].ravel(), *(z[1:] for z in others))), step)
 
 
 def covering(box: Box) -> Points:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import islice
 from math import pi
 from typing import NamedTuple
 
@@ -43,6 +44,8 @@ CROSSING, OVER, MISREAD = 8.0, 300.0, 1e4
 """Cost of each thing a leader crosses or runs along, of lettering under it, of being read as another thing's letter, mm."""
 VAGUE = 6.0
 """Cost of a place about as near to another line as to the vector that is named, in millimetres of distance."""
+IN_HEAD = 3 * VAGUE * owners.SPOT
+"""Cost of a leader to a head where vectors run together: a name right beside its vector is better, mm."""
 OUTSIDE = 20.0
 """Cost of a place that leaves the place of the label's view, in millimetres of distance."""
 AWAY, STRAYED = 8.0, 24.0
@@ -57,13 +60,24 @@ Around = tuple[npt.NDArray[np.float64], Points]
 USUAL: Around = np.array([0.0, 0.6, 1.4, 2.5, 4.0, 6.0, 8.5, 11.0, 14.0, 18.0, 23.0]), np.exp(2j * pi * np.arange(24) / 24)
 CLOSER: Around = np.concatenate(([0.0, 0.6, 1.4, 2.5], np.arange(4.0, 40.0))), np.exp(2j * pi * np.arange(96) / 96)
 """Many more, for the few labels whose leader meets something wherever it is led from the usual places."""
-SOME, MANY = 8, 48
-"""So many places of a label that does not stand well at its first one are judged in one go: at first, and then."""
+MANY = 96
+"""So many places of a label that does not stand well at its first one are judged in one go."""
+ROOMS = 8
+"""So many places of a label are tried to make room for the one it meets."""
 _MARGIN = CLEAR * np.array([-1.0, -1.0, 1.0, 1.0])[:, None]
 
 
-Placement = tuple[Label, Box, bool]
-"""A label, which may have moved along its vector, its place, whether there was room for it."""
+class Placement(NamedTuple):
+    """A label, which may have moved along its vector, its place, whether there was room for it.
+
+    ``unsure``: it stands where another line is one with its vector, which is seen apart elsewhere.
+    """
+
+    label: Label
+    box: Box
+    free: bool
+    unsure: bool = False
+
 
 
 def set_labels(canvas: Canvas, ink: InkIndex) -> list[Crowded]:
@@ -74,13 +88,13 @@ def set_labels(canvas: Canvas, ink: InkIndex) -> list[Crowded]:
     first = len(canvas.marks)
     placed = PlacedLabels(ink, canvas.labels, [part.box for part in canvas.parts])
     placed.place_all()
-    for around in (USUAL, USUAL, CLOSER):
+    for around in (USUAL, USUAL, CLOSER, CLOSER):
         for k in range(len(canvas.labels)):
             placed.improve(k, around)
-    for label, box, _ in placed.at:
+    for label, box, *_ in placed.at:
         _draw(canvas, label, box)
     ink.add(canvas.marks[first:])
-    crowded = [Crowded(label.text, label.anchor) for label, (_, _, free) in zip(canvas.labels, placed.at, strict=True) if not free]
+    crowded = [Crowded(label.text, label.anchor) for label, at in zip(canvas.labels, placed.at, strict=True) if not at.free]
     canvas.labels.clear()
     return crowded
 
@@ -99,13 +113,13 @@ class PlacedLabels:
         self.written = np.vstack((ink.written, np.full((len(labels), 4), np.nan)))
         self.boxes = self.written[len(ink.written):]
         self._led: dict[int, tuple[complex, complex]] = {}
-        self._unsure = dict[tuple[Label, complex], int]()
+        self._unsure = dict[tuple[Label, complex, complex], int]()
         self._update_leaders()
 
     def put(self, k: int, placement: Placement) -> None:
         """Label ``k`` is set."""
         self.at[k:k + 1] = [placement]
-        label, box, _ = placement
+        label, box, *_ = placement
         self.boxes[k] = box
         before = self._led.pop(k, None)
         if _needs_leader(label, box):
@@ -128,7 +142,9 @@ class PlacedLabels:
 
     def _is_undisturbed(self, k: int) -> bool:
         """Whether label ``k`` has no leader, and none is near it: nothing can be wrong with it that was not before."""
-        return k not in self._led and not len(ink_index.find_near(self._led_sides, Box(*self.boxes[k]), NEAR + ink_index.ROUNDING))
+        if k in self._led or self.at[k].unsure:
+            return False
+        return not len(ink_index.find_near(self._led_sides, Box(*self.boxes[k]), NEAR + ink_index.ROUNDING))
 
     def count_faults(self, *some: int) -> int:
         """How many things are wrong with some labels where they stand; to be read as another thing's is worse than the others."""
@@ -143,18 +159,19 @@ class PlacedLabels:
         if k not in self._led:
             return over
         written = np.delete(self.written, len(self.written) - len(self.boxes) + k, axis=0)
-        named = self.at[k][0], self._led[k][0]
-        if named not in self._unsure:
-            self._unsure[named] = int(_surroundings(self.ink, named[0]).count_unsure(np.array(named[1:]))[0])
-        met = int(ink_index.crosses(a, b, *self._led[k]).sum()) + _count_crossed(written, *self._led[k])
-        return over + met + self._unsure[named]
+        led = label, start, end = self.at[k].label, *self._led[k]
+        if led not in self._unsure:
+            here = _surroundings(self.ink, label)
+            self._unsure[led] = int(here.count_unsure(here.first_met(np.array([start]), np.array([end])))[0])
+        met = int(owners.meet(a, b, *self._led[k]).sum()) + _count_crossed(written, *self._led[k])
+        return over + met + self._unsure[led]
 
     def _is_misread(self, k: int) -> bool:
-        """Whether label ``k`` has no leader and is read as another's because of the leader of one."""
-        label, box, _ = self.at[k]
+        """Whether label ``k`` has no leader and is read as another's, because of one or where its vector is one with another."""
+        label, box, _, unsure = self.at[k]
         p, (x0, y0, x1, y1) = self.leaders, box.inset(-NEAR)
         near = (p.real > x0) & (p.real < x1) & (p.imag > y0) & (p.imag < y1)
-        return k not in self._led and bool(near.any()) and bool(_surroundings(self.ink, label).misreading(box))
+        return k not in self._led and (unsure or (bool(near.any()) and bool(_surroundings(self.ink, label).misreading(box))))
 
     def in_conflict(self, k: int) -> list[int]:
         """Labels whose leader or lettering the leader of label ``k`` meets, and those whose leader meets its lettering."""
@@ -162,7 +179,7 @@ class PlacedLabels:
         found = others[ink_index.enters(a, b - a, *self.boxes[k])].tolist()
         if k in self._led:
             start, end = self._led[k]
-            found += others[ink_index.crosses(a, b, start, end)].tolist()
+            found += others[owners.meet(a, b, start, end)].tolist()
             found += [n for n in np.flatnonzero(ink_index.enters(start, end - start, *self.boxes.T)).tolist() if n != k]
         return list(dict.fromkeys(found))
 
@@ -171,12 +188,6 @@ class PlacedLabels:
         other = self._whose != k
         a, b = self._ends[other].T
         return self._whose[other], a, b
-
-    def is_free(self, box: Box) -> bool:
-        """Whether a rectangle lies inside the sheet, clear of heavy lines, lettering and the labels that are set."""
-        sides = np.array(box)[:, None]
-        near = self.boxes[ink_index.find_near(self.boxes.T, box, CLEAR)]
-        return bool(self.are_clear(sides)[0] and not _overlap(sides + _MARGIN, near)[0])
 
     def are_clear(self, sides: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Which rectangles lie inside the sheet, clear of heavy lines and lettering but for that of labels."""
@@ -192,7 +203,7 @@ class PlacedLabels:
             first = _first_places(self, some, tried)
             for k, (label, candidates, box) in enumerate(zip(some, tried, first, strict=True), begin):
                 if box is not None and self._is_left_alone(box, label, begin, k):
-                    self.put(k, (label, box, True))
+                    self.put(k, Placement(label, box, True))
                 else:
                     self.put(k, _place(self, label, candidates, USUAL))
 
@@ -212,10 +223,9 @@ class PlacedLabels:
         """Give label ``k`` a better place if something is wrong with it, and what it meets another one if need be."""
         if self._is_undisturbed(k) or not self.count_faults(k):
             return
-        # One that has no better place gets it when the one it meets makes room, or changes places with it.
+        # One that has no better place gets it when the one it meets makes room, or else all that stand where it had better be.
         ways = ((k,), *(pair for q in self.in_conflict(k) for pair in ((k, q), (q, k))))
-        if not any(self._set_again(some, around) for some in ways) and not any(self.exchange(k, q) for q in self.in_conflict(k)) \
-                and around is CLOSER:
+        if not any(self._set_again(some, around) for some in ways) and around is CLOSER and not self.set_alone(k):
             any(self.make_room(*pair) for pair in ways[1:])
 
     def _place_again(self, k: int, around: Around) -> None:
@@ -231,14 +241,31 @@ class PlacedLabels:
             self._place_again(k, around)
         return self._keep_if_better(some, before, faults)
 
+    def set_alone(self, k: int) -> bool:
+        """Set label ``k`` where it would stand if there were no others, and those it meets there anew, if that makes it better."""
+        alone, was = PlacedLabels(self.ink, self.labels[k:k + 1], self.views), self.at[k]
+        alone._place_again(0, CLOSER)
+        (there,) = alone.at
+        self.put(k, there)
+        near = ink_index.find_near(self.boxes.T, there.box, CLEAR).tolist()
+        some = tuple(dict.fromkeys((k, *near, *self.in_conflict(k))))
+        self.put(k, was)
+        before, faults = [self.at[n] for n in some], self.count_faults(*some)
+        for n in some:
+            self.lift(n)
+        self.put(k, there)
+        for n in some[1:]:
+            self._place_again(n, CLOSER)
+        return self._keep_if_better(some, before, faults)
+
     def make_room(self, k: int, q: int) -> bool:
-        """Try the places of label ``k`` one after another until label ``q`` has a good one, too; else both stay where they were."""
+        """Try some places of label ``k`` in turn until label ``q`` has a good one, too; else both stay where they were."""
         before, label = [self.at[k], self.at[q]], self.labels[k]
         for n in (k, q):
             self.lift(n)
         places = _Places(self, label, *_candidates(self, [label], CLOSER))
-        for at in places.well_apart(_surroundings(self.ink, label)):
-            self.put(k, (label, places.box(at), True))
+        for at in islice(places.well_apart(_surroundings(self.ink, label)), ROOMS):
+            self.put(k, Placement(label, places.box(at), True))
             self._place_again(q, CLOSER)
             if not self.count_faults(k, q):
                 return True
@@ -246,21 +273,9 @@ class PlacedLabels:
                 self.lift(n)
         return self._keep_if_better((k, q), before, 0)
 
-    def exchange(self, k: int, q: int) -> bool:
-        """Let two labels change places, as leaders that cross ask for, if both have room there and that makes it better."""
-        before, faults = [self.at[k], self.at[q]], self.count_faults(k, q)
-        for n in (k, q):
-            self.lift(n)
-        for n, (label, own, _), to in ((k, before[0], before[1][1].centre), (q, before[1], before[0][1].centre)):
-            half = complex(own.width, own.height) / 2
-            box = Box((to - half).real, (to - half).imag, (to + half).real, (to + half).imag)
-            reads = _needs_leader(label, box) or not _surroundings(self.ink, label).misreading(box)
-            self.put(n, (label, box, self.is_free(box) and reads))
-        return self._keep_if_better((k, q), before, faults if self.at[k][2] and self.at[q][2] else 0)
-
     def _keep_if_better(self, some: tuple[int, ...], before: list[Placement], faults: int) -> bool:
         """Whether labels have fewer than so many ``faults`` now; else they go back to where they were before."""
-        if faults and self.count_faults(*some) < faults:
+        if self.count_faults(*some) < faults and all(self.at[k].free >= was.free for k, was in zip(some, before, strict=True)):
             return True
         for k, was in zip(some, before, strict=True):
             self.put(k, was)
@@ -378,14 +393,15 @@ class _Places:
             return None, worst
         found = dict[int, float]()
         # What is wrong with the spot that is named is wrong with every place: one with nothing else is as good as any.
-        spot = here.unsure * np.where(self.led, CROSSING * owners.LED, VAGUE * owners.SPOT) if here.unsure else None
+        spot = here.unsure * np.where(self.led, CROSSING * owners.LED if here.head is None else IN_HEAD, VAGUE * owners.SPOT) \
+            if here.unsure else None
         for rank, k in enumerate(self.free.tolist()):
             if self.cost[k] >= enough:
                 break
             if (not leaders and self.led[k]) or (spot is not None and self.cost[k] + spot[k] >= least):
                 continue
             if k not in found:
-                some = self.free[rank:rank + (MANY if found else SOME)].tolist()
+                some = self.free[rank:rank + MANY].tolist()
                 found |= zip(some, self.faults(here, some), strict=True)
             fault = found[k]
             if not fault or (spot is not None and fault <= spot[k]):
@@ -417,6 +433,8 @@ class _Places:
             wx0, wy0, wx1, wy1 = written[ink_index.find_near(written.T, Box.around(np.concatenate((p, q))), 0.0)].T
             over = ink_index.enters(p[:, None], (q - p)[:, None], wx0, wy0, wx1, wy1).sum(axis=1)
             found[led] += OVER * over + CROSSING * here.count_crossed(p, q)
+            if here.head is not None:
+                found[led] += IN_HEAD * here.unsure
         return found.tolist()
 
     def well_apart(self, here: owners.Surroundings) -> Iterator[int]:
@@ -469,20 +487,24 @@ def _place(placed: PlacedLabels, label: Label, candidates: _Candidates, around: 
     """Place of a label, which may have moved along the vector it names rather than have a leader; whether there is room for it."""
     places, here = _Places(placed, label, candidates), _surroundings(placed.ink, label)
     k, fault = places.choose(here)
-    found, vague = (label, places.box(places.cheapest() if k is None else k), bool(len(places.free))), 0 < fault <= VAGUE
+    found = Placement(label, places.box(places.cheapest() if k is None else k), bool(len(places.free)))
+    vague, sure = 0 < fault <= VAGUE, not here.unsure
     cost = fault if k is None else float(places.cost[k]) + fault
     unread = k is None or fault > VAGUE
     if unread or places.run_on[k] or vague or _needs_leader(*found[:2]):
         for moved in (replace(label, anchor=anchor) for anchor in here.places_along()):
             others = _Places(placed, moved, *_candidates(placed, [moved], around))
-            there, fault = others.choose(_surroundings(placed.ink, moved), leaders=unread)
+            beside = _surroundings(placed.ink, moved)
+            of_vector = beside.vector is not None  # so near to its end a leader would name the point
+            there, fault = others.choose(beside, leaders=unread and of_vector)
+            sure = sure or (of_vector and not beside.unsure)
             # Lettering that keeps off thin lines had better have a leader than stand over some.
             if there is not None and not others.run_on[there] and (
                     others.cost[there] + fault < cost or not (fault or vague or label.thin > 1.0)):
-                found, cost = (moved, others.box(there), True), others.cost[there] + fault
+                found, cost, here = Placement(moved, others.box(there), True), others.cost[there] + fault, beside
                 if not fault:
                     break
-    return found
+    return found._replace(unsure=sure and here.runs_together())
 
 
 def _surroundings(ink: InkIndex, label: Label) -> owners.Surroundings:

@@ -285,7 +285,7 @@ def letter(markup: str, height: float) -> Lettering:
         When a character is missing from the font or the markup makes no sense.
     """
     setter = _Setter(markup)
-    setter.set(markup, 0j, height)
+    setter.set(markup, 0j, float(height))  # 5 and 5.0 share one place in the cache, and the record tells the height
     right = top = bottom = 0.0
     for at, text, size in setter.runs:
         width, above, below = _extents(text)

@@ -39,6 +39,10 @@ UNSURE = 0.7
 """A leader that ends so near to a foreign strong line, mm, may be its."""
 SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88, 0.05, 0.95)
 """Places along a vector where its letter may stand."""
+ALONG = 3.0
+"""Lines that part within so many mm are seen to be two."""
+IN_HEAD = 0.8
+"""Part of an arrow head's length, from its tip, at which a leader ends in it: of lines close together it is the widest."""
 
 
 class Surroundings:
@@ -50,8 +54,9 @@ class Surroundings:
         self.a, self.b, self.of, self.strong = ink.parting(p, reach)
         self.sides = sides(self.a, self.b)
         self.leaders = self.of == LEADER
-        self.vector = _vector(ink, label)
-        self.own, self.twin = _own(ink, self, label), np.zeros(len(self.of), bool)
+        named = _named(ink, label)
+        self.vector = _vector(ink, label, named)
+        self.own, self.twin = _own(ink, self, label, named), np.zeros(len(self.of), bool)
         if self.vector is not None:
             self._runs = _runs(label)
             # What lies on the vector is named together with it.
@@ -59,6 +64,9 @@ class Surroundings:
             self.twin = _are_others(ink, self.of, along & ~self.own)
             self.own |= along
         self.unsure = 0 if self.vector is None else int(self.count_unsure(np.array([p]))[0])
+        heads = [mark for n in named if isinstance(mark := ink.marks[n], Fill)] if self.unsure else []
+        self._heads = [mark.points for mark in heads if mark.by and mark.by.role == "vector"]
+        self.head = next((points for points in self._heads if _is_inside(p, points)), None)
 
     def misreading(self, box: Box) -> str:
         """What is wrong with lettering in a rectangle: "crossed", "nearer", or "" for nothing."""
@@ -97,22 +105,46 @@ class Surroundings:
         parallel = np.abs((d * np.conj(along)).imag) < PARALLEL * np.abs(d) * np.abs(along)
         apart = np.minimum(_to_line(a, start, end), _to_line(b, start, end))
         beside = np.minimum(apart, np.minimum(distance(a, b, start + 0.5 * along), distance(a, b, end)))
-        strong = self.strong[near] & ~self.own[near]
-        crossed = (strong | self.leaders[near] & ~self.own[near]) & crosses(a, b, start, end)
-        count = (parallel & (beside < BESIDE)).astype(int) + crossed + (LED - 1) * (crossed & self.leaders[near])
-        return np.asarray(np.bincount(which, count, len(ends)).astype(int) + LED * self.count_unsure(starts))
+        leader, foreign = self.leaders[near], ~self.own[near]
+        crossed = foreign & (self.strong[near] & crosses(a, b, start, end) | leader & meet(a, b, start, end))
+        count = (parallel & (beside < BESIDE)).astype(int) + crossed + (LED - 1) * (crossed & leader)
+        return np.asarray(np.bincount(which, count, len(ends)).astype(int) + LED * self.count_unsure(self.first_met(starts, ends)))
+
+    def first_met(self, starts: Points, ends: Points) -> Points:
+        """Where an eye that comes along each leader meets what is named: at the edge of the head in which the leader ends."""
+        if self.head is None:
+            return starts
+        a, b, p, q = self.head, np.roll(self.head, -1), starts[:, None], ends[:, None]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = ((a - p) * np.conj(b - a)).imag / ((q - p) * np.conj(b - a)).imag
+        return np.asarray(starts + np.where(crosses(a, b, p, q), share, 0.0).max(axis=1) * (ends - starts))
 
     def count_unsure(self, starts: Points) -> Numbers:
         """How many foreign strong lines, or other vectors on its line, a leader from each point, shape (m,), might name as well."""
         others = self.strong & ~self.own | self.twin
         return np.asarray((distance(self.a[others], self.b[others], starts[:, None]) < UNSURE).sum(axis=1))
 
+    def runs_together(self) -> bool:
+        """Whether another line is one with the vector for a while where its name stands."""
+        if self.vector is None or not self._heads:
+            return False
+        a, b = self.vector
+        beside = self.anchor + ALONG * np.array([-1.0, 0.0, 1.0]) * (b - a) / abs(b - a)
+        others = self.strong & ~self.own | self.twin
+        return bool((distance(self.a[others], self.b[others], beside[:, None]).max(axis=0) <= HARDLY).any())
+
     def places_along(self) -> list[complex]:
         """Other places on the vector that the label names, the nearer the middle the sooner; none where it names no vector."""
         if self.vector is None:
             return []
         a, b = self.vector
-        return [a + share * (b - a) for share in SHARES if abs(a + share * (b - a) - self.anchor) > SYMBOL]
+        within = [complex(z[0] + IN_HEAD * (z[1:].mean() - z[0])) for z in self._heads]
+        return [z for z in (*(a + share * (b - a) for share in SHARES), *within) if abs(z - self.anchor) > SYMBOL]
+
+
+def meet(a: Points, b: Points, start: Any, end: Any) -> Flags:
+    """Which leaders, from ``a`` to ``b``, are crossed by another one, or run past the spot where it starts."""
+    return np.asarray(crosses(a, b, start, end) | ((distance(a, b, start) < UNSURE) & (np.abs(a - start) > UNSURE)))
 
 
 class Pairs(NamedTuple):
@@ -212,13 +244,14 @@ def read_well(ink: InkIndex, labels: Sequence[Label], boxes: Floats) -> Flags:
     p = np.array([label.anchor for label in labels])
     x0, y0, x1, y1 = boxes
     way = np.abs(nearest(p, boxes) - p)
-    vectors = [_vector(ink, label) for label in labels]
+    named = [_named(ink, label) for label in labels]
+    vectors = [_vector(ink, label, own) for label, own in zip(labels, named, strict=True)]
     reach = np.maximum(way + 2 * AT + ROUNDING, [0.0 if v is None else SEEN for v in vectors])
     e0, f0, e1, f1 = ink.sides
     which, near = (ink.parts & (e0 <= (x1 + reach)[:, None]) & (e1 >= (x0 - reach)[:, None]) & (f0 <= (y1 + reach)[:, None])
                    & (f1 >= (y0 - reach)[:, None])).nonzero()
     a, b, of, at = ink.a[near], ink.b[near], ink.of[near], p[which]
-    steps = [k * len(ink.marks) + number for k, label in enumerate(labels) for number in _named(ink, label)]
+    steps = [k * len(ink.marks) + number for k, own in enumerate(named) for number in own]
     found = np.isin(which * len(ink.marks) + of, steps)
     apart = distance(a, b, at)
     # Whether the anchor is where one of these lines ends, or on none of them.
@@ -271,11 +304,11 @@ def _named(ink: InkIndex, label: Label) -> list[int]:
     return [n for n in found if n not in foreign and (by := ink.marks[n].by) not in others and by and by.role != "point"]
 
 
-def _vector(ink: InkIndex, label: Label) -> tuple[complex, complex] | None:
+def _vector(ink: InkIndex, label: Label, named: Sequence[int]) -> tuple[complex, complex] | None:
     """Ends of the vector, or of the construction line or line of a detail named by its own letter, beside which a label stands."""
     if label.by is None:
         return None
-    named, lines = _named(ink, label), _lines_of(ink, label.by, {"vector"} | {"construction", "symbol"} & {label.by.role})
+    lines = _lines_of(ink, label.by, {"vector"} | {"construction", "symbol"} & {label.by.role}) if named else {}
     return next((ends for n, ends in lines.items() if n in named and _apart(*ends, label.anchor) <= 2 * AT
                  and min(abs(z - label.anchor) for z in ends) > 2 * AT), None)
 
@@ -293,12 +326,12 @@ def _apart(a: complex, b: complex, p: complex) -> float:
     return abs(a + (0.0 if t < 0.0 else 1.0 if t > 1.0 else t) * (b - a) - p)
 
 
-def _own(ink: InkIndex, here: Surroundings, label: Label) -> Flags:
+def _own(ink: InkIndex, here: Surroundings, label: Label, named: Sequence[int]) -> Flags:
     """Which segments a label may stand for: those of the step it names, and what meets or lies about its anchor.
 
     The letter of a vector or a curve stands beside it: there lines that only pass by the anchor are foreign.
     """
-    found = np.isin(here.of, _named(ink, label))
+    found = np.isin(here.of, named)
     if here.vector is not None or (found.any() and not _at_end(ink, here, found, label.anchor)):
         return found
     about = np.maximum(np.abs(here.a - label.anchor), np.abs(here.b - label.anchor)) <= label.gap + SYMBOL
@@ -319,6 +352,12 @@ def _are_others(ink: InkIndex, of: Numbers, along: Flags) -> Flags:
     for k in along.nonzero()[0].tolist():
         found[k] = of[k] != LEADER and (by := ink.marks[of[k]].by) is not None and by.role == "vector"
     return found
+
+
+def _is_inside(p: complex, corners: Points) -> bool:
+    """Whether a point lies inside a convex polygon, or on its edge."""
+    sides_ = ((corners - p) * np.conj(np.roll(corners, -1) - p)).imag
+    return bool((sides_ >= -EVEN).all() or (sides_ <= EVEN).all())
 
 
 def _to_line(p: Any, a: Any, b: Any) -> Floats:

@@ -216,6 +216,7 @@ def viewed(project: Project, n: int) -> tuple[Arrangement, Canvas, dict[str, str
 def composed(project: Project, n: int) -> Composed:
     """Draw sheet ``n`` and tell its scale factors and the labels that found no free place."""
     plan, canvas, fields = viewed(project, n)
+    illegible = [*composition.crowded(project, [n]), *_unread(project, n, plan, canvas)]
     crowded = [*(Shortened(text, TITLE_BLOCK.centre, left) for text, left in canvas.shortened.items()), *place(canvas, INSIDE)]
     title = f"{fields['project']}. {fields['title']}"
     drawing = Drawing(
@@ -226,7 +227,16 @@ def composed(project: Project, n: int) -> Composed:
     project.shown.add(n)
     return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
                     tuple(canvas.frames), _symbols(project, drawing), _dead(project, plan),
-                    tuple(composition.left_out(project, [n])), tuple(composition.crowded(project, [n])))
+                    tuple(composition.left_out(project, [n])), tuple(illegible))
+
+
+def _unread(project: Project, n: int, plan: Arrangement, canvas: Canvas) -> list[Remark]:
+    """What stands too densely on sheet ``n`` to be read and is in none of its details; its letters look for no places yet."""
+    if not any(view.draw == "details.dense" for view in plan.offers):
+        return []
+    from tmm_sheets.sheets.linkage import details
+
+    return details.unread(project, n, canvas)
 
 
 def ask_again(project: Project, n: int) -> None:

@@ -1,6 +1,7 @@
 """A crowd of letters goes into an enlarged detail, and nothing is named twice or by nobody; one rule says what is dense."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -151,3 +152,41 @@ def test_details_are_numbered_as_they_stand_there():
         canvas.begin(PLACE, title)
     assert details.next_name(canvas) == "III"
     assert np.unique(details.NAMES).size == len(details.NAMES)
+
+
+class Drawn(dict):
+    """A plan as it is read here: its points by name, in mm."""
+
+    name, labels = "plan", ("0",)
+
+    def __init__(self, points):
+        super().__init__({n: SimpleNamespace(name=n, path=f"plan/{n}", symbol="", at=lambda k, z=z: z) for n, z in points.items()})
+
+
+@pytest.mark.parametrize(("points", "lettered", "told"), [
+    ({"p": 0, "a": 40, "b": 40j}, "pab", []),
+    ({"p": 0, "a": 40, "b": 43, "c": 43 + 3j}, "pabc", [3]),
+    ({"p": 0, "a": 40, "b": 43, "c": 43 + 3j}, "pab", []),             # a letter that is not drawn
+    ({"p": 0, "a": 40, "b": 43, "c": 43 + 0.1j}, "pabc", []),          # two in one place have one letter
+    ({"p": 0, "a": 40, "b": 43, "c": 43 + 3j, "d": 42 + 2j, "e": 3 + 1j, "f": 3 - 1j}, "pabcdef", [4]),
+], ids=["none", "one", "not drawn", "coincident", "many"])  # fmt: skip
+@pytest.mark.parametrize("enlarged", [False, True])
+def test_what_is_dense_and_in_no_detail_is_told(points, lettered, told, enlarged, monkeypatch):
+    plan, canvas = Drawn(points), Canvas()
+    canvas.begin(PLACE, "Plan of velocities")
+    canvas.scales["plan"] = Scale("μ_V", 1.0, "(m/s)/mm")
+    frame = canvas.placed("plan", "0", 120 + 120j, 1.0)
+    for name in lettered:
+        at = complex(canvas.frames[frame](complex(points[name])))
+        canvas.tracing("text", f"plan/{name}", "0", frame).label(at, name)
+    vectors = [("V", plan["p"], step) for step in plan.values() if step is not plan["p"]]
+    monkeypatch.setattr(details, "_polygons", lambda project: {"plan": (plan, vectors)})
+    if enlarged:
+        for it in details._corners(canvas, details._polygons(None), details._whole(canvas, ["plan"])):
+            canvas.window(it.centre, it.reach + 1.5)
+    found = [remark.values["count"] for remark in details.unread(None, 1, canvas)]
+    assert found == ([] if enlarged else told)
+
+
+def test_nothing_dense_on_a_sheet_without_plans():
+    assert details.unread(None, 1, Canvas()) == []

@@ -27,8 +27,10 @@ from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame, Points, Prove
 from tmm_sheets.drawing.owners import AT, CLEARLY
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.numbers import number
+from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.linkage import link_marks
 from tmm_sheets.sheets.player import PlayerStage, together
+from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -135,7 +137,7 @@ def next_name(canvas: Canvas) -> str:
 def _nth(project: Project, canvas: Canvas, options: dict[str, Any]) -> Dense | None:
     """The dense place that the ``nth`` detail is of: those before it are drawn, or found no room."""
     drawn = sum(part.draw == VIEW and bool(part.title) for part in canvas.parts)
-    circles = [mark.centre for n in canvas.windows if isinstance(mark := canvas.marks[n], Arc)]
+    circles = _circles(canvas)
     plans = _polygons(project) if canvas.frames else {}
     whole = _whole(canvas, plans)
     left = [place for place in (*_crowds(canvas, {frame.view for frame in whole}), *_corners(canvas, plans, whole))
@@ -195,6 +197,14 @@ class Corner(Dense):
         """How many vectors run through it."""
         return sum(chord(self.centre, 2 * self.reach, self.points[a], self.points[b]) is not None for _, a, b in self.vectors)
 
+    def lettered(self, canvas: Canvas) -> int:
+        """At how many of its places letters are asked for."""
+        asked = [(label.by.step, label.anchor) for label in canvas.labels
+                 if label.by is not None and label.by.frame >= 0 and canvas.frames[label.by.frame] is self.frame]
+        z = np.array([at for name in self.names for step, at in asked
+                      if step == self.plan[name].path and abs(at - self.points[name]) <= AT])
+        return len(together(z, 0.5))
+
     def draw(self, project: Project, canvas: Canvas, middle: complex, half: float) -> float:
         """Vectors and letters of the corners; the polygon keeps none that it cannot show."""
         place = _placed(canvas, self.frame, self.centre, middle, self.times(half))
@@ -242,6 +252,23 @@ class Corner(Dense):
                      if not any(b.min() < r + 0.2 and b.max() > r - 0.2 for b in boxes)), usual)
 
 
+def unread(project: Project, n: int, canvas: Canvas) -> list[Remark]:
+    """Plans of sheet ``n`` with more letters within a few millimetres than find room, which no detail of all its views shows."""
+    plans = _polygons(project) if canvas.frames else {}
+    shown, found = _circles(canvas), dict[str, int]()
+    for it in _corners(canvas, plans, _whole(canvas, plans)):
+        if not any(abs(it.centre - at) < 1e-6 for at in shown) and (count := it.lettered(canvas)) >= SEVERAL:
+            title = "".join(run.text for run in letter(canvas.parts[it.part].title, 5.0).runs)
+            found[title] = max(count, found.get(title, 0))
+    said = marked("sheet {n}: {what}: {count} points with letters lie within {size:.0f} mm and there is no room to enlarge them")
+    return [Remark(said, {"n": n, "what": what, "count": count, "size": WIDE}) for what, count in found.items()]
+
+
+def _circles(canvas: Canvas) -> list[complex]:
+    """Middles of what is enlarged on a sheet, and of the details."""
+    return [mark.centre for n in canvas.windows if isinstance(mark := canvas.marks[n], Arc)]
+
+
 def _no_more_zero(canvas: Canvas, it: Corner) -> None:
     """A vector that the detail draws is not told to be about zero beside the plan."""
     drawn = {v.sign for v in it.vectors if {v.tail, v.head} & set(it.names)}
@@ -263,8 +290,10 @@ def _whole(canvas: Canvas, polygons: Container[str]) -> list[PlacedFrame]:
 def _corners(canvas: Canvas, polygons: Mapping[str, Polygon], whole: Sequence[PlacedFrame]) -> list[Corner]:
     """Corners that cannot be read, as they stand on the sheet: the worst of each plan, then others.
 
-    Those of many velocity plans come last, where most are together first.
+    Those of many velocity plans come last, where most are together first. They are looked for once for all details of a sheet.
     """
+    if (known := canvas.corners.get(len(whole))) is not None:
+        return known
     many = {plan for plan, count in Counter(frame.plan for frame in whole).items() if count > 2}
     found = []
     for frame in whole:
@@ -280,7 +309,8 @@ def _corners(canvas: Canvas, polygons: Mapping[str, Polygon], whole: Sequence[Pl
             if it.crossed <= MOST and not any(set(names) & set(other.names) for other in of_plan):
                 of_plan.append(it)
         found += [((plan.name in many, rank, -len(it.names) * (plan.name in many)), it) for rank, it in enumerate(of_plan)]
-    return [it for _, it in sorted(found, key=itemgetter(0))]
+    canvas.corners[len(whole)] = [it for _, it in sorted(found, key=itemgetter(0))]
+    return canvas.corners[len(whole)]
 
 
 def _polygons(project: Project) -> dict[str, Polygon]:
