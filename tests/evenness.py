@@ -4,9 +4,9 @@ Usage: python -m tests.evenness [--ciphers N --seed S] [--lang L] [--each] [--jo
 ciphers.
 
 For every arrangement: share of cells of 50 mm without ink (mean, most), sheets with an empty rectangle of more than 160 x 120 mm,
-what position plans take of their places, and what of the kinematics is below its floor (:mod:`tmm_sheets.sheets.border_solver`):
-one line
-for each, with "told" where the sheet itself says so. Exit status 1 when an aim is missed. What cannot be built is told.
+what position plans take of their places, what of the kinematics is below its floor (:mod:`tmm_sheets.sheets.border_solver`), one
+line for each, with "told" where the sheet itself says so, and how far details and equations stand from what they are of. Exit
+status 1 when an aim is missed. What cannot be built is told.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import statistics
 import sys
 from collections import defaultdict
 from collections.abc import Iterator
-from itertools import combinations
+from itertools import combinations, pairwise
 from math import inf
 from multiprocessing import Pool
 from typing import NamedTuple
@@ -27,11 +27,11 @@ from tests.labels import add_options, chosen
 from tmm_sheets import catalogue
 from tmm_sheets.box import Box
 from tmm_sheets.drawing import evenness
-from tmm_sheets.drawing.marks import Drawing, Text
+from tmm_sheets.drawing.marks import Arc, Drawing, Text
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.border_solver import CRANK, EMPTY, LETTERED, SHARE, VECTOR, Floor
 from tmm_sheets.sheets.composed import Composed
-from tmm_sheets.sheets.linkage import kinematic_frames, kinematics
+from tmm_sheets.sheets.linkage import details, kinematic_frames, kinematics
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.words import set_paper, tell
 
@@ -39,6 +39,11 @@ MEAN, MOST = 0.12, 0.18
 """At most so many cells are empty in the mean of a kind, on one sheet."""
 PLANS = 0.60
 """What position plans take of their places, at least, in the median."""
+DISTANCE = 200.0
+"""So far a detail or an equation stands at most from its view, mm, middle from middle."""
+EQUATIONS = {"moments of the lever": ("kinetics.lever",),
+             "moments": ("kinetics.group", "kinetics.groups", "kinetics.crank", "friction.mechanism")}
+"""Equations and the views they are read from."""
 
 
 class Size(NamedTuple):
@@ -50,6 +55,13 @@ class Size(NamedTuple):
     told: bool
 
 
+class Apart(NamedTuple):
+    """How far a detail or an equation stands from what it is of, mm."""
+
+    view: str
+    distance: float
+
+
 class Sheet(NamedTuple):
     """What is measured of a sheet; ``gap`` is the largest empty rectangle, ``plans`` what position plans take of their places."""
 
@@ -59,6 +71,7 @@ class Sheet(NamedTuple):
     gap: Box
     plans: list[float]
     sizes: list[Size]
+    apart: list[Apart]
 
     def below(self) -> list[Size]:
         """What is below its floor."""
@@ -118,6 +131,29 @@ def sizes(project: Project, sheet: Composed) -> Iterator[Size]:
     yield from (Size(view, size, VECTOR, tell(VECTOR.what) in told) for view, size in vectors.items())
 
 
+def apart(sheet: Composed) -> Iterator[Apart]:
+    """Details, from the middle of the window to the middle of its circle on the view, and equations, to the nearest of their views.
+
+    Of an equation its middle counts, of its views the nearest point.
+    """
+    marks, parts = sheet.drawing.marks, sheet.parts
+    spans = [marks[a.first:b.first] for a, b in pairwise(parts)]
+    for k, (part, own) in enumerate(zip(parts, spans, strict=False)):
+        if part.draw == details.VIEW and part.title:
+            window, circle = (next(m for m in span if isinstance(m, Arc)) for span in (own, spans[k + 1]))
+            yield Apart(f"{part.draw} {part.title}", abs(window.centre - circle.centre))
+        if own and own[-1].of in EQUATIONS:
+            at = Box.around(evenness.dense(own, 2.0)).centre
+            views = [span for other, span in zip(parts, spans, strict=False) if other.draw in EQUATIONS[own[-1].of]]
+            inked = [evenness.dense((m for m in span if m.of not in EQUATIONS), 2.0) for span in views]
+            yield Apart(own[-1].of, min((_off(at, Box.around(ink)) for ink in inked if len(ink)), default=inf))
+
+
+def _off(z: complex, box: Box) -> float:
+    x, y = max(box.x0 - z.real, z.real - box.x1, 0.0), max(box.y0 - z.imag, z.imag - box.y1, 0.0)
+    return abs(complex(x, y))
+
+
 OF_PLANS = ("kinematics.position_plans", "kinematics.velocity_plans", "kinematics.acceleration_plan",
             "kinematics.second_accelerations", "kinematics.enlarged_velocities")
 
@@ -137,7 +173,8 @@ def measured(name: str) -> list[Sheet | str]:
             continue
         titles = {part.title for part in sheet.parts if part.draw == "kinematics.position_plans"}
         found.append(Sheet(f"{name} {n}", kind, evenness.empty_cells(sheet.drawing), gap(sheet.drawing),
-                           [share for title, share in evenness.fills(sheet.drawing) if title in titles], [*sizes(project, sheet)]))
+                           [share for title, share in evenness.fills(sheet.drawing) if title in titles], [*sizes(project, sheet)],
+                           [*apart(sheet)]))
     return found
 
 
@@ -179,6 +216,12 @@ def main(args: list[str]) -> int:
         every = [size.size for s in sheets for size in s.sizes if size.floor == floor]
         under = sum(size.floor == floor for _, size in below)
         print(f"  {floor.what}: least {min(every):.1f} mm, below {floor.least:.0f}: {under} of {len(every)}")
+    every_apart = [(s.name, one) for s in sheets for one in s.apart]
+    for of in (details.VIEW, *EQUATIONS):
+        own = [one.distance for _, one in every_apart if one.view.partition(" (")[0].rstrip("IVX ") == of]
+        far = sum(distance > DISTANCE for distance in own)
+        print(f"{of}: {len(own)}, over {DISTANCE:.0f} mm from their views {far}, farthest {max(own, default=0.0):.0f}")
+    bad += [f"{name} {one.view}: {one.distance:.0f} mm from its view" for name, one in every_apart if one.distance > DISTANCE]
     bad += [f"{name} {size.view}: {size.floor.what} {size.size:.1f} mm{', told' * size.told}" for name, size in below]
     print(*(f"not built: {s}" for s in found if isinstance(s, str)), *bad, sep="\n")
     return 1 if bad else 0

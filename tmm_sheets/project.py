@@ -50,6 +50,8 @@ class Project:
         """Numbers of the sheets whose steps are made."""
         self.arranged = dict[int, Any]()
         """Arrangements of the sheets with their views in place, by number (:mod:`tmm_sheets.sheets.composition`)."""
+        self.expected = dict[Any, Any]()
+        """What is read with the figures of the sheets and needs room there: forms of equations, enlarged details."""
 
     @property
     def sheets(self) -> tuple[str, ...]:

@@ -119,8 +119,8 @@ function knownFor(stop) {
 function askGuess(stop) {
   const button = (key, act, more = {}) => node("button", { type: "button", class: "chip", onclick: act, ...more }, say(key));
   const question = say(`ask ${stop.kind}`, { point: stop.tail && calledHere(stop.tail), head: calledHere(stop.step), rate: calledHere(stop.step) });
-  const asked = node("p", { html: `${question} <span class="hint">${knownFor(stop).join(", ")}</span>` });
-  if (lesson.mode !== "guess") return [node("p", { html: question.replace(/\?.*/u, "?") })]; // in a lecture the hall is asked
+  const asked = node("p", { ".innerHTML": `${question} <span class="hint">${knownFor(stop).join(", ")}</span>` });
+  if (lesson.mode !== "guess") return [node("p", { ".innerHTML": question.replace(/\?.*/u, "?") })]; // in a lecture the hall is asked
   const check = ASKED[stop.kind] === "sense" ? [[1, "counter-clockwise"], [-1, "clockwise"]].map(([sense, key]) => button(key, () => checkGuess(sense))) : [button("check", () => checkGuess(), { class: "chip main" })];
   return [asked, node("div", { class: "chips" }, ...check, button("show it", giveUp), node("output", { id: "guessed", class: "count" }), node("span", { class: "count score", id: "score" }, score())), node("div", { id: "verdict", role: "status" }, ...verdict())];
 }
@@ -130,7 +130,7 @@ const score = () => say("score", { r: guess.right, n: guess.all });
 function verdict() {
   if (!guess.verdict) return [];
   const { right, key, values } = guess.verdict, sized = ["not squared", "no two", "other rate", "other length", "ratio inverse", "too long", "too short"].includes(key);
-  return [node("p", { class: right ? "verdict good" : "verdict", role: right ? "status" : false, html: `${right ? `<span class="count score">${score()}</span>` : ""}${sized ? `${say("direction right")} ` : ""}${say(key, values)}` })];
+  return [node("p", { class: right ? "verdict good" : "verdict", role: right ? "status" : false, ".innerHTML": `${right ? `<span class="count score">${score()}</span>` : ""}${sized ? `${say("direction right")} ` : ""}${say(key, values)}` })];
 }
 
 function checkGuess(sense) {

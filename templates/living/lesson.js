@@ -79,10 +79,10 @@ function tellLesson() {
   $("lessonScrub").setAttribute("aria-valuetext", stop ? `${lesson.at + 1}. ${stop.title}` : "0");
   $("lessonBack").disabled = lesson.at < 0;
   $("lessonNext").disabled = lesson.at === all - 1 && !lesson.asks;
-  const head = node("h2", { html: stop ? `<span class="count">${plain(say("step {n} of {all}", { n: lesson.at + 1, all }))}</span> ${plain(stop.title)}${plain(changes)}` : plain(planOf(lesson.told.plan).title + changes) });
+  const head = node("h2", { ".innerHTML": stop ? `<span class="count">${plain(say("step {n} of {all}", { n: lesson.at + 1, all }))}</span> ${plain(stop.title)}${plain(changes)}` : plain(planOf(lesson.told.plan).title + changes) });
   if (lesson.asks) $("told").replaceChildren(head, ...askGuess(stop));
   else if (!stop) $("told").replaceChildren(head, node("p", {}, say("begin")));
-  else $("told").replaceChildren(head, node("p", { html: sentencesOf(stop).join(" ") }), ...(stop.why ? [node("p", { class: "hint" }, stop.why)] : []), ...verdict());
+  else $("told").replaceChildren(head, node("p", { ".innerHTML": sentencesOf(stop).join(" ") }), ...(stop.why ? [node("p", { class: "hint" }, stop.why)] : []), ...verdict());
 }
 
 // --- the equation ---------------------------------------------------------------------------------------------------------
@@ -105,12 +105,12 @@ function drawEquation(seen) {
       const { drawn, line } = term, known = term.times === 2, on = seen, bars = known ? (on >= drawn ? 2 : 0) : on >= Math.min(drawn, line < 0 ? drawn : line) ? 1 : 0;
       const below = on >= drawn ? inMm(apart(term.tail, term.head)) : bars && line >= 0 ? formulaOf(lesson.told.stops[line])[0] : "";
       found.push(node("button", { type: "button", class: `term c${lesson.terms.get(`${term.tail} ${term.head}`).colour}${bars ? "" : " out"}${[drawn, line].includes(lesson.at) ? " cur" : ""}`, onclick: () => goStop(line >= 0 && lesson.at < line ? line : drawn),
-        html: `${symbolMarkup(term.symbol)}<u class="${bars ? "on" : ""}"></u><u class="${bars > 1 ? "on" : ""}"></u><small>${below}</small>` }));
+        ".innerHTML": `${symbolMarkup(term.symbol)}<u class="${bars ? "on" : ""}"></u><u class="${bars > 1 ? "on" : ""}"></u><small>${below}</small>` }));
     });
   });
   if (one.head === "0") found.push(node("span", { class: "op" }, "= 0"));
   else {
-    found.unshift(node("span", { class: `term head${seen >= one.drawn ? "" : " out"}`, html: `${symbolMarkup(one.head)}<u></u><u></u><small>${seen >= one.drawn ? inMm(apart(lesson.told.pole, one.end)) : ""}</small>` }));
+    found.unshift(node("span", { class: `term head${seen >= one.drawn ? "" : " out"}`, ".innerHTML": `${symbolMarkup(one.head)}<u></u><u></u><small>${seen >= one.drawn ? inMm(apart(lesson.told.pole, one.end)) : ""}</small>` }));
     found[1].textContent = "=";
   }
   place.append(...found);
@@ -341,8 +341,8 @@ function handOut() {
   const { at, asks } = lesson;
   const lines = lesson.told.stops.map((stop, n) => {
     goStop(n, true);
-    const [equation, told] = ["equation", "told"].map((id) => node("div", { class: id, html: $(id).innerHTML }));
-    return node("article", {}, lesson.cards[1].svg.cloneNode(true), node("div", {}, equation, told, node("p", { class: "formula", html: formulaOf(stop).join(" ") })));
+    const [equation, told] = ["equation", "told"].map((id) => node("div", { class: id, ".innerHTML": $(id).innerHTML }));
+    return node("article", {}, lesson.cards[1].svg.cloneNode(true), node("div", {}, equation, told, node("p", { class: "formula", ".innerHTML": formulaOf(stop).join(" ") })));
   });
   $("handout").replaceChildren(node("h1", {}, `${planOf(lesson.told.plan).title}, ${momentOf(machine.phi)}`), lesson.cards[0].svg.cloneNode(true), ...lines);
   goStop(at, true, asks);

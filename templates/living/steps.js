@@ -4,7 +4,7 @@ const titled = (id) => { const s = stepOf(id); return lettered(s.symbol ?? s.nam
 
 const momentOf = (when) => (typeof when === "number" ? `φ = ${mod(when * 180 / Math.PI, 360).toFixed(1).replace(".", decimal())}°` : when && say("position {label}", { label: when }));
 const valued = (id, when) => `${titled(id)} <small data-step="${plain(id)}">${plain(shown(valueOf(id, when), stepOf(id).unit))}</small>`;
-const chip = (id, when) => node("button", { type: "button", class: "chip", onclick: () => ask(id, when), html: valued(id, when) });
+const chip = (id, when) => node("button", { type: "button", class: "chip", onclick: () => ask(id, when), ".innerHTML": valued(id, when) });
 
 // What is told of a step in a position; in motion what is told of all alike, as long as the numbers are the project's.
 function toldIn(told, when) {
@@ -29,16 +29,16 @@ function argumentChip(arg, when, plan) {
   if (arg.step !== undefined) return chip(arg.step, when);
   const text = arg.name === "crank angles" && typeof when === "number" ? `<small data-moment>${momentOf(when)}</small>` : `<small>${plain(shown(givenOf(arg, when, plan), arg.unit))}</small>`;
   const name = arg.symbol ? lettered(arg.symbol) : plain(arg.name === "constant" ? "" : arg.name);
-  return node("span", { class: "chip given", title: arg.source ?? arg.name, html: `${name} ${text}` });
+  return node("span", { class: "chip given", title: arg.source ?? arg.name, ".innerHTML": `${name} ${text}` });
 }
 
 function tellStep(id, when) {
   const s = stepOf(id), plan = planOf(s.plan), formula = s.formula, moment = momentOf(when);
-  const found = [node("h2", { html: valued(id, when) }), node("p", { class: "where" }, plan.title, ...(moment ? [", ", node("span", { "data-moment": true }, moment)] : [])),
-    node("p", { class: "sentence", html: lettered(toldIn(s.sentence, when)) })];
+  const found = [node("h2", { ".innerHTML": valued(id, when) }), node("p", { class: "where" }, plan.title, ...(moment ? [", ", node("span", { "data-moment": true }, moment)] : [])),
+    node("p", { class: "sentence", ".innerHTML": lettered(toldIn(s.sentence, when)) })];
   if (formula) {
     const numbers = toldIn(formula.numbers, when);
-    found.push(node("div", { class: "formula", html: mathml(formula.symbols) + (numbers ? mathml(`= ${numbers}`) : "") }));
+    found.push(node("div", { class: "formula", ".innerHTML": mathml(formula.symbols) + (numbers ? mathml(`= ${numbers}`) : "") }));
   }
   const args = s.args.filter((a) => a.name !== "constant" || a.step !== undefined);
   if (args.length) found.push(node("h3", {}, say("made of")), node("div", { class: "chips" }, ...args.map((a) => argumentChip(a, when, plan))));
@@ -60,7 +60,7 @@ function tellWhy(id, when) {
         list.append(node("li", {}, argumentChip(arg, when, planOf(stepOf(one).plan)), ` ${arg.source ?? say("given")}`));
       }
     }
-    list.append(node("li", {}, chip(one, when), node("span", { html: ` ${lettered(toldIn(stepOf(one).sentence, when))}` })));
+    list.append(node("li", {}, chip(one, when), node("span", { ".innerHTML": ` ${lettered(toldIn(stepOf(one).sentence, when))}` })));
   }
   return node("details", {}, node("summary", {}, say("why: back to the givens")), list);
 }

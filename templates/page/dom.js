@@ -10,7 +10,7 @@ export function node(name, attributes = {}, ...inside) {
   const found = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) {
     if (key.startsWith("on")) found.addEventListener(key.slice(2), value);
-    else if (key === "html") found.innerHTML = value;
+    else if (key.startsWith(".")) found[key.slice(1)] = value; // a property
     else if (value !== false && value !== undefined && value !== null) found.setAttribute(key, value === true ? "" : value);
   }
   found.append(...inside.flat().filter((one) => one || one === ""));

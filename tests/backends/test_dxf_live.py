@@ -142,7 +142,8 @@ def test_dimensions_measure_what_they_say():
             said[name] = float(number.replace(",", ".")), d.get_measurement() * factor, d.dimtype
             assert d.dxf.actual_measurement == pytest.approx(d.get_measurement() * factor, abs=1e-3)
     one, two = gear.wheels
-    real = {r"a\S^ w;": gear.a_w, r"c\S*^ ;m": gear.clearance * gear.m, "ym": gear.ym}
+    real = {r"a\S^ w;": gear.a_w, r"c\S*^ ;m": gear.clearance * gear.m, "ym": gear.ym,
+            r"h\S^ a;\S*^ ;m": SHAPER.variant.gear.addendum * gear.m, "p": np.pi * gear.m}  # the last two of the rack
     real |= {f"{name}{index}{i};": getattr(w, key) for i, w in ((1, one), (2, two)) for name, index, key in (
         ("r", r"\S^ a", "ra"), ("r", r"\S^ w", "rw"), ("r", r"\S^ ", "r"), ("r", r"\S^ b", "rb"), ("r", r"\S^ f", "rf"),
         ("s", r"\S^ ", "s_chord"), ("p", r"\S^ ", "p_chord"), ("ρ", r"\S^ f", "fillet"))}

@@ -245,6 +245,6 @@ def test_a_point_that_is_off_is_told_as_one_that_others_follow_only_where_lines_
         element = SimpleNamespace(role="vector", kind="line", points=ends)
         return SimpleNamespace(element=element, verdict="red", trace=SimpleNamespace(at=ends + 1j * np.array(off)))
 
-    built = (SimpleNamespace(mistake=codes.POINT_MOVED_ON(point="a", distance=Number("3.0"))), points)
+    built = (SimpleNamespace(mistake=codes.POINT_MOVED(point="a", distance=Number("3.0"))), points)
     assert image._borne_out(built, [red(*line) for line in lines]) is borne
     assert image._borne_out((SimpleNamespace(mistake=object()), points), [])  # one of the usual mistakes

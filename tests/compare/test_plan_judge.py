@@ -14,6 +14,7 @@ from tests.compare.untidy import PROJECTS, trial
 from tests.few import seldom
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.cad import cad_drawing, cad_file
+from tmm_sheets.compare.cad.line_fit import MOST
 from tmm_sheets.compare.cad.plan_ink import Lettering, PlanInk
 from tmm_sheets.compare.cad.plan_views import PlanRecord, titles
 from tmm_sheets.compare.report_pages import page
@@ -121,6 +122,18 @@ def test_a_drawing_of_nothing_known_is_refused_and_titles_are_asked_for(tmp_path
     with pytest.raises(CannotBuild) as e:
         compared(ROCKER, path)
     assert "write over each plan what it is and at which position" in str(e.value)
+
+
+def test_of_very_many_strokes_the_longest_are_looked_at(tmp_path):
+    doc = ezdxf.new()
+    size = np.random.default_rng(1).permutation(np.arange(1, MOST + 501)) / 50 + 7
+    for k, long in enumerate(size.tolist()):
+        doc.modelspace().add_line((200 * (k % 60), 9 * k), (200 * (k % 60) + long, 9 * k))
+    path = tmp_path / "many.dxf"
+    doc.saveas(path)
+    ink = PlanInk(cad_file.read(path).spaces[0], 1.0, scaled=True)
+    assert np.abs(ink.b - ink.a).min() == pytest.approx(np.sort(size)[500])
+    assert len(ink.a) == MOST
 
 
 @pytest.mark.parametrize(("text", "kind", "label"), [

@@ -26,10 +26,11 @@ def on_sheets(*names):
 
 
 def test_four_groups_beside_the_kinematics_are_told_to_be_too_small():
-    *_, vectors, lever = map(str, composition.crowded(on_sheets("kinematics_forces_wide", "flywheel"), [1]))
+    *_, vectors, group = map(str, composition.crowded(on_sheets("kinematics_forces_wide", "flywheel"), [1]))
     assert "60 mm" in vectors
-    assert "29" in lever
-    for said in (vectors, lever):
+    assert "group 2–3" in group
+    assert "forces on it: 9" in group
+    for said in (vectors, group):
         assert 'sheets = ["kinematics", "forces", "flywheel"]' in said
 
 

@@ -236,8 +236,6 @@ TOO_THICK = Sentence("line-width", marked("drawn thick, {width} mm, where {least
 # --- measured numbers -------------------------------------------------------------------------------------------------------
 
 POINT_MOVED = Sentence("point-moved", marked("point {point} lies {distance} mm off"))
-POINT_MOVED_ON = Sentence("point-moved", marked(
-    "point {point} lies {distance} mm off; what follows from it is drawn from there"))
 STARTS_WITH = Sentence("step-off", marked("it starts with {step}"))
 THROUGHOUT = Sentence("throughout", marked_n(
     "off at {n} position, and nothing before it explains that: computed or read in another way?",

@@ -207,7 +207,11 @@ def grown(corners: Points, by: float) -> Points:
     return corners + by * np.array([-u - v, u - v, u + v, v - u])
 
 
-def sampled(points: Points, step: float = 0.5) -> tuple[Points, Points]:
+SAMPLED = 0.5
+"""mm between points along a line that are looked at."""
+
+
+def sampled(points: Points, step: float = SAMPLED) -> tuple[Points, Points]:
     """Points along a polyline at most ``step`` mm apart, and the unit normal at each, to the left of its direction."""
     run = np.abs(np.diff(points))
     keep = np.concatenate(([True], run > 1e-9))

@@ -9,17 +9,15 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
+from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import Any, Literal, TypeVar
 
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.codes import Number, Remark
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.story import Story, listed
+from tmm_sheets.compare.story import Story, StoryTable, ToldMistake, listed
 from tmm_sheets.words import marked, reader, tell, tell_n
-
-if TYPE_CHECKING:
-    from tmm_sheets.compare.story import Story
 
 Verdict = Literal["green", "amber", "red"]
 """Within the tolerance of a pencil; within twice that; beyond."""
@@ -313,12 +311,26 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     return out
 
 
-def as_text(story: Story, end: str) -> str:
-    """A report for the terminal: mistakes, tables, what was not judged, and how it ended."""
-    out = [*listed(story.mistakes), story.title, ""]
+def reported(source: Source, project: str, sheet: int, file: Path, said: Sequence[str], records: Sequence[FindingRecord],
+             start: Sequence[FindingRecord], mistakes: Sequence[ToldMistake], tables: Sequence[StoryTable], unjudged: Sequence[str],
+             remarks: Sequence[str], unclaimed: Sequence[Mapping[str, Any]] = (), summary: Mapping[str, Any] = MappingProxyType({}),
+             **beside: Any) -> Report:
+    """The report on a drawing: for the terminal the mistakes, the tables, what was not judged, and how it ended, ``said``.
+
+    Parameters
+    ----------
+    source, project, sheet, records, start, unclaimed, summary, beside : as of :func:`as_tree`
+    file : the drawing
+    said : how it ended, what is allowed
+    mistakes, tables, unjudged, remarks : what else is told
+    """
+    title = tell("{project}, sheet {sheet}: {file}").format(project=project, sheet=sheet, file=file.name)
+    story = Story(title, (*said, *remarks), tuple(mistakes), tuple(tables), tuple(unjudged))
+    lines = [*listed(story.mistakes), title, ""]
     for t in story.tables:
-        out += [f"{t.title}:", *table(t.head, t.rows), ""]
-    return "\n".join([*out, *story.unjudged, end])
+        lines += [f"{t.title}:", *table(t.head, t.rows), ""]
+    tree = as_tree(source, project, sheet, records, start, unclaimed, summary, **beside)
+    return Report("\n".join([*lines, *story.unjudged, *said]), tree, {}, tuple(remarks), story, records, start)
 
 
 def of_element(f: Finding, verdict: Outcome, **more: Any) -> FindingRecord:

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import pairwise
-from math import floor, inf, log10
+from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -48,19 +48,17 @@ ROUNDS = 3
 """How often all borders are tried with each of these."""
 TOO_SMALL, BELOW = 1e8, 1e7
 """Price of a place that is too small by its own size, mm^2: more than that of any sheet; and of what is not seen at all in it."""
-_SERIES = (*HANDY, 10.0)
+_SERIES = [factor * 10.0 ** power for power in range(-15, 16) for factor in HANDY]
 
 
 def rounded_up(mu: float) -> float:
     """The next scale factor of the series, as :func:`~tmm_sheets.construction.scale.handy`, quick and not to the last digit."""
-    power = 10.0 ** floor(log10(mu))
-    return _SERIES[bisect_left(_SERIES, mu / power * (1 - 1e-9))] * power
+    return _SERIES[bisect_left(_SERIES, mu * (1 - 1e-9))]
 
 
 def rounded_down(mu: float) -> float:
     """The scale factor of the series that is not more than one."""
-    power = 10.0 ** floor(log10(mu))
-    return _SERIES[bisect_right(_SERIES, mu / power * (1 + 1e-9)) - 1] * power
+    return _SERIES[bisect_right(_SERIES, mu * (1 + 1e-9)) - 1]
 
 
 @dataclass(frozen=True)
@@ -112,7 +110,7 @@ class Need:
             return min(w, max(around_w, self.least[0])) * min(h, max(around_h, self.least[1]))
         a, b = span_w / free_w, span_h / free_h
         mu = a if a > b else b
-        mu = rounded_up(mu if mu > self.finest else self.finest)
+        mu = _SERIES[bisect_left(_SERIES, (mu if mu > self.finest else self.finest) * (1 - 1e-9))]  # rounded_up, without a call
         return (span_w / mu + around_w) * (span_h / mu + around_h)
 
     def _room(self, width: float, height: float) -> tuple[float, float]:
@@ -134,10 +132,16 @@ class Need:
         small = max(1.0 - self.coarsest / self.needed(width, height), 0.0) if self.coarsest < inf else 0.0
         return small + max(1.0 - self.ink(width, height) / (width * height * self.filled), 0.0) if self.filled else small
 
-    def cost(self, area: float, width: float, height: float) -> float:
-        """Price of a place of this size for a view that is meant to have ``area``, mm^2; the square: what is worst counts most."""
-        found = area * (area / self.ink(width, height)) ** 2 + TOO_SMALL * self.short(width, height)
-        return found + BELOW * self.below(width, height) if self.filled or self.coarsest < inf else found
+    def cost(self, area: float, width: float, height: float) -> tuple[float, float]:
+        """Price of a place of this size for a view that is meant to have ``area``, mm^2, and of what it is too small.
+
+        The square: what is worst counts most.
+        """
+        low = width < self.least[0] or height - self.covered < self.least[1]
+        lacks = TOO_SMALL * self.short(width, height) if low else 0.0
+        if self.filled or self.coarsest < inf:
+            lacks += BELOW * self.below(width, height)
+        return area * (area / self.ink(width, height)) ** 2, lacks
 
 
 @dataclass
@@ -188,7 +192,8 @@ class BorderNode:
         if found is not None:
             return found
         if self.need is not None:
-            found = self.need.cost(self.area, width, height)
+            cost, lacks = self.need.cost(self.area, width, height)
+            found = cost + lacks
         else:
             found = 0.0
             for child, size in zip(self.children, self.sizes(width, height), strict=True):
@@ -197,6 +202,10 @@ class BorderNode:
                     return found
         self.tried[place] = found
         return found
+
+    def priced(self, width: float, height: float) -> tuple[float, float]:
+        """What a view costs in such a place, and what it lacks there of the size at which it is read."""
+        return self.need.cost(self.area, width, height) if self.need is not None else (self.cost(width, height), 0.0)
 
     def settle(self, width: float, height: float, steps: Sequence[float]) -> bool:
         """Move each border by that of some steps, to one side or the other, which costs least, then those inside the parts.
@@ -239,6 +248,78 @@ class BorderNode:
             found |= child.places(Box(box.x0, at - size, box.x1, at) if self.axis else Box(at, box.y0, at + size, box.y1))
             at += -(size + self.gap) if self.axis else size + self.gap
         return found
+
+
+WITHOUT_TEXT, WITHOUT_DETAILS = 3.0, 5.0
+"""What a figure costs without what is read with it: it rather comes out by one scale factor smaller, or by two."""
+UNDER = 3.0
+"""Distance of the text under a figure from its place, mm."""
+
+
+class Form(NamedTuple):
+    """Size of what stands under a figure, or ``beside`` it, mm, and how many times as much as the best a figure with it costs."""
+
+    width: float
+    height: float
+    price: float = 1.0
+    beside: bool = False
+
+
+@dataclass
+class FigureNode(BorderNode):
+    """A figure with what is read with it in one of some ``forms`` or left out: the border follows from the place.
+
+    What has no node of its own, only room, is put there later.
+    """
+
+    forms: Sequence[Form] = ()
+    without: float = WITHOUT_TEXT
+
+    def cost(self, width: float, height: float, most: float = inf) -> float:
+        """What the figure costs in what the form leaves of such a place that makes it cost least."""
+        place = width, height
+        if place not in self.tried:
+            cost, lacks = self._best(width, height)[0]
+            self.tried[place] = cost + lacks
+        return self.tried[place]
+
+    def priced(self, width: float, height: float) -> tuple[float, float]:
+        """What the figure costs with what is read with it, and what it lacks."""
+        return self._best(width, height)[0]
+
+    def settle(self, width: float, height: float, steps: Sequence[float]) -> bool:
+        """There is nothing to move."""
+        return False
+
+    def places(self, box: Box) -> dict[int, Box]:
+        """Place of the figure, and of a text the whole width under it."""
+        _, wide, high = self._best(box.width, box.height)
+        found = self.children[0].places(box._replace(x1=box.x1 - wide, y0=box.y0 + high))
+        for text in self.children[1:]:
+            found |= text.places(box._replace(y1=box.y0 + high - UNDER))
+        return found
+
+    def _best(self, width: float, height: float) -> tuple[tuple[float, float], float, float]:
+        """What the figure costs and lacks, and the width and the height that are taken from it; of forms alike the first that fits.
+
+        Nothing makes a figure smaller than it is read.
+        """
+        figure, price = self.children[0], 0.0
+        whole, lacks = figure.priced(width, height)
+        least = self.without * whole
+        best = (least, lacks), 0.0, UNDER + 2 * ROUNDED if self.children[1:] else 0.0
+        for form in self.forms:
+            if form.price == price:
+                continue
+            if lacks or form.price * whole >= least:
+                break  # a smaller place costs no less
+            wide, high = (form.width + ROUNDED, 0.0) if form.beside else (0.0, form.height + ROUNDED + UNDER)
+            if wide < width - SHOWN and high < height - SHOWN and (form.height <= height if form.beside else form.width < width):
+                price = form.price
+                cost, small = figure.priced(width - wide, height - high)
+                if not small and price * cost < least:
+                    best, least = ((price * cost, 0.0), wide, high), price * cost
+        return best
 
 
 def solve(tree: BorderNode, box: Box) -> dict[int, Box]:
@@ -317,9 +398,11 @@ def reaching(box: Box, z: Any, d: Any, inset: tuple[float, float, float, float],
     size, around, finest = [], [], []
     for x, offset, room, edge in ((z.real, d.real, inside.width, inset[0] + inset[2]),
                                   (z.imag, d.imag, inside.height, inset[1] + inset[3])):
-        mu, span = needed(x, offset, max(room, 40.0)), float(np.ptp(x[~np.isnan(x)]))
-        size.append(span if mu > 0 else 0.0)
-        around.append(edge + (max(room, 40.0) - span / mu if mu > 0 else float(np.ptp(offset))))
+        mu = needed(x, offset, max(room, 40.0))
+        drawn = x / mu + offset if mu > 0 else offset
+        last, first = int(np.nanargmax(drawn)), int(np.nanargmin(drawn))  # they stay the outermost ones at about this size
+        size.append(float(x[last] - x[first]) if mu > 0 else 0.0)
+        around.append(edge + float(offset[last] - offset[first]))
         finest.append(mu)
     short = [beside + SHOWN if mu == max(finest) > 0 else 0.0 for beside, mu in zip(around, finest, strict=True)]
     return Need((size[0], size[1]), (around[0], around[1]), (max(least[0], short[0]), max(least[1], short[1])))
@@ -332,6 +415,12 @@ LOW = 0.3
 def reached(size: float, floor: float) -> float:
     """Share of its ink that a view counts for with a figure of this size, mm: all from its floor on."""
     return 1.0 if size >= floor else LOW * size / floor
+
+
+def over(view: BorderNode, forms: Sequence[Form]) -> BorderNode:
+    """A view with room under it for text in one of some forms; none, the view alone."""
+    text = BorderNode(Need(least=(0.0, 0.0)), area=0.0)
+    return FigureNode(children=[view, text], forms=forms) if forms else view
 
 
 def leaf(box: Box, need: Need, share: float = 1.0) -> BorderNode:
@@ -380,6 +469,8 @@ LETTERED = Floor(marked("a plan with letters"), 25.0)
 """Larger side of a velocity or acceleration plan: three to five letters of 3.5 mm stand about it; below it has none."""
 SHARE = 0.5
 """Share of its place that a position plan takes at least, 0 .. 1: the mechanism is what the sheet is about."""
+LINKS = 1 / 3
+"""Size of links in that of their whole scheme, below which they are not what its scale factor is for."""
 EMPTY = 160.0 * 120.0
 """Area of the largest rectangle without ink that no eye stops at, mm^2."""
 

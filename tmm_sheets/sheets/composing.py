@@ -24,6 +24,7 @@ from tmm_sheets.drawing.paper import A1
 from tmm_sheets.drawing.placing import place
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.drawing.title_block import block, draw_frame
+from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets import composition
 from tmm_sheets.sheets.composed import Composed, Leaving
 from tmm_sheets.sheets.views import VIEWS, Arrangement, arrangement, function
@@ -31,7 +32,6 @@ from tmm_sheets.words import marked, of_file, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
-    from tmm_sheets.remarks import Remark
 
 TOUCH = 2.0
 """So far lines of a view may come out of its box, mm: a quarter of the distance between views, and what indices need."""
@@ -59,7 +59,7 @@ def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:
                   if v is views[k] and other.title and _apart(other.box, part.box)]
         bounds = _Bounds(part.box, views[k], frame, title_block)
         # What stands anywhere has free paper about it: its letters are led from there.
-        anywhere = part.draw in VIEWS and VIEWS[part.draw].stands == "anywhere"
+        anywhere = part.draw in VIEWS and (VIEWS[part.draw].near or VIEWS[part.draw].stands == "anywhere")
         out = [*bounds.left_by(lines, TOUCH, beside), *bounds.left_by(labels, inf if anywhere else BESIDE, [])]
         if out:
             # What is drawn later in the place of a titled part is one view with it.
@@ -241,7 +241,7 @@ def _unread(project: Project, n: int, plan: Arrangement, canvas: Canvas) -> list
 
 def ask_again(project: Project, n: int) -> None:
     """Ask a project for all that sheet ``n`` shows: the steps are made, lettering looks for no places."""
-    plan, _, _ = viewed(project, n)
+    plan, *_ = viewed(project, n)
     project.shown.add(n)
     _ = _dead(project, plan), [*composition.left_out(project, [n])], [*composition.crowded(project, [n])]
 

@@ -20,9 +20,21 @@ from tmm_sheets.construction.readable import CURVE, MAIN, POLE, TOOTH
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.answered import Answered
-from tmm_sheets.sheets.border_solver import CRANK, GAP, LETTERED, VECTOR, BorderNode, Measured, cut, fixed, joined, risen, solve
+from tmm_sheets.sheets.border_solver import (
+    CRANK,
+    GAP,
+    LETTERED,
+    LINKS,
+    VECTOR,
+    BorderNode,
+    Measured,
+    cut,
+    fixed,
+    joined,
+    risen,
+    solve,
+)
 from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
-from tmm_sheets.sheets.linkage.linkage_sizes import LINKS
 from tmm_sheets.sheets.player import extent, fit_frame
 from tmm_sheets.sheets.views import Arrangement, ViewKind, ViewPlace, arrangement, function
 from tmm_sheets.words import marked
@@ -33,7 +45,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.project import Project
 
-FORM = "1"
+FORM = "6"
 """Number of the form in which arrangements are kept, another one for every change of it."""
 TITLE_BLOCK = Box(648.0, 8.0, 832.0, 61.0)
 """Place of the title block among the views."""
@@ -193,9 +205,17 @@ def _parts(project: Project, view: ViewPlace) -> list[tuple[ViewPlace, BorderNod
         return [(view, fixed(view.box))]
     try:
         node = function(view.kind.place)(project, view)
+        if node is not None and view.draw in DETAILED and view.options.get("only", "force") == "force":
+            from tmm_sheets.sheets.linkage import details
+
+            node = details.with_room(project, view, node)
     except CannotBuild:
         node = fixed(view.box)  # drawing it will say why
     return [(view, node)] if node is not None else []
+
+
+DETAILED = ("kinematics.acceleration_plan", "kinetics.crank", "kinetics.group", "kinetics.lever")
+"""Views that have room for enlarged details beside their figures."""
 
 
 def is_meant(project: Project, view: ViewPlace) -> bool:
@@ -410,8 +430,9 @@ def lever(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
     k = project.force_index
     shown = kinetic_frames.on_lever(project, k)
     points = extent([complex(step.at(k)) for step in project.study.lever.points.values()])
+    place = view.options["places"][0] if "places" in view.options else view.box
     yield from _among_forces(project, Remark(marked("the lever")), max(points.width, points.height), len(shown), "lever",
-                             kinetic_frames.lever_scheme(project, k, shown), view.box.inset(*kinetic_frames.LEVER))
+                             kinetic_frames.lever_scheme(project, k, shown), place.inset(*kinetic_frames.LEVER))
 
 
 def group(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:

@@ -35,7 +35,7 @@ REACH = 2.0
 """How far a label may stand off beyond its gap, mm."""
 OPEN = 100.0
 """What is open to one side of a view and wider than this is no part of its picture, mm."""
-CLOSE = (100.0, 200.0)
+CLOSE = (100.0, 190.0)
 """Distances of a view from the spot that it belongs to, mm: as near as is wanted, and as is allowed."""
 LARGE = (160.0, 120.0), (150.0, 112.0), (216.0, 76.0)
 """An empty rectangle of these sides, upright or lying, is a gap, mm: the second where cells that its edges cut hide one, the third
@@ -50,30 +50,26 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside:
     """Draw those of the offered views that find room ``inside`` the sheet, away from boxes ``closed`` to them.
 
     A view tells its sizes, from what it wants down to what it can do with, and perhaps the left edge that it would like best or
-    what it belongs to: it stands near that or nowhere, and those that do so choose first, but equations among forces; one that says
-    where it ``stands`` stands there where nothing is free near.
+    what it belongs to: it stands near that or nowhere, and those that do so choose first.
     """
     taken = _closed(inside, closed)
     seen, forces = 0, _of_forces(canvas, inside)
     whole, drawn = (_whole(canvas, inside, lettering) for lettering in (True, False))
     for view, wanted in _wanted(project, canvas, offered):
-        box = None
         for k in range(seen, len(canvas.parts)):
             taken |= _of_part(canvas, k, inside)
         seen = len(canvas.parts)
         if view.kind.near:
             spot, own, others = function(view.kind.near)(project, canvas, view.options)
             pictures = [_ink_box(canvas, k, inside) for k in (own, *others)]
-            # What may stand elsewhere too rather has large letters than the nearest place.
-            tried = [[size] for size in wanted] if view.kind.stands else [wanted]
-            box = next((box for sizes in tried if (box := _near(taken, sizes, inside, spot, pictures)) is not None), None)
-        if box is None and (view.kind.stands or not view.kind.near):
+            box = _near(taken, wanted, inside, spot, pictures)
+        else:
             at = function(view.kind.left)(view.options) if view.kind.left else None
-            # Nothing parts a loaded scheme from its force plans but the equations that are read from it, and kinematics stand
-            # among the forces only where there is no other room. Beside a plan that is all but one line there is much of it from
-            # the title to the equation: no plan but a table may stand there.
+            # Nothing parts a loaded scheme from its force plans, and kinematics stand among the forces only where there is no other
+            # room. Beside a plan that is all but one line there is much of it from the title to the equation: no plan but a table
+            # may stand there.
             stands = view.kind.stands
-            room = taken if stands == "forces" else taken | (drawn if stands == "table" else whole)
+            room = taken | (drawn if stands == "table" else whole)
             if stands in ("anywhere", "table"):
                 rooms = [*(room | ~_gaps(canvas, inside, closed, sides) for sides in LARGE), room]
             else:
@@ -87,7 +83,7 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside:
 
 def _wanted(project: Project, canvas: Canvas, offered: Sequence[ViewPlace]) -> Iterator[tuple[ViewPlace, Any]]:
     """The views that have something to show, with their sizes; those first that belong to another: details before tables."""
-    for view in sorted(offered, key=lambda view: not view.kind.near or view.kind.stands == "forces"):
+    for view in sorted(offered, key=lambda view: not view.kind.near):
         try:
             wanted = function(view.kind.sizes)(project, canvas, view.options)
         except CannotBuild:

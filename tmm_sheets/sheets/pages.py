@@ -48,6 +48,11 @@ class Piece:
     marks: tuple[tuple[int, Mark], ...]
     place: Box
 
+    @property
+    def begin(self) -> int:
+        """Number of its first mark on the sheet."""
+        return self.marks[0][0]
+
     @cached_property
     def ink(self) -> Box:
         """Rectangle round the marks, mm of the sheet."""
@@ -145,7 +150,11 @@ def _near(a: Box, b: Box, apart: float = 0.0) -> bool:
 
 
 def _pages(pieces: Sequence[Piece], asked: Paper, first: str) -> list[PaperPage]:
-    """Pages by a simple rule: the largest piece first, each on the first page that has room for it, there high and then left."""
+    """Pages by a simple rule: each piece on the first page that has room for it, there high and then left.
+
+    What the sheet begins with comes first, then the largest pieces; pages follow each other as their first pieces do on the sheet,
+    larger paper last.
+    """
     def has_room(unit: Piece, form: str = first) -> bool:
         return _paper_for(unit, asked, form).name == asked.name
 
@@ -163,12 +172,14 @@ def _pages(pieces: Sequence[Piece], asked: Paper, first: str) -> list[PaperPage]
     # What stands in the gaps of something stays there, if that makes it no larger than a page.
     units = _together(units, lambda a, b: _near(a.ink, b.ink) and _put(a.with_other(b), PaperPage(asked, []), first))
     pages = list[PaperPage]()
-    for unit in sorted(units, key=lambda unit: (not has_room(unit), -unit.ink.width * unit.ink.height)):
+    begin = min((unit.begin for unit in units if has_room(unit)), default=0)
+    for unit in sorted(units, key=lambda unit: (not has_room(unit), unit.begin > begin, -unit.ink.width * unit.ink.height)):
         usual = ((page, first if k == 0 else FOLLOWING) for k, page in enumerate(pages) if page.paper.name == asked.name)
         if not any(_put(unit, page, form) for page, form in usual):
             form = FOLLOWING if pages else first
             pages.append(PaperPage(_paper_for(unit, asked, form), []))
             _put(unit, pages[-1], form)
+    pages.sort(key=lambda page: (page.paper.name != asked.name, min(piece.begin for piece, _ in page.placed)))
     return [_spread(page, first if k == 0 else FOLLOWING) for k, page in enumerate(pages)]
 
 

@@ -45,13 +45,12 @@ class ViewKind:
     sizes
         ``(project, canvas, options)`` to the sizes of an offered view, mm, the one most wanted first; none for nothing to show.
     near
-        ``(project, canvas, options)`` to the spot that an offered view belongs to: it stands near that, or nowhere unless it tells
-        where it ``stands`` else.
+        ``(project, canvas, options)`` to the spot that an offered view belongs to: it stands near that, or nowhere.
     left
         ``(options)`` to the left edge that an offered view would like best, mm.
     stands
         where an offered view is looked a place for: with what is of its part; "anywhere" where most is empty; as a "table" that
-        belongs to no plan; among "forces", between a loaded scheme and its plans.
+        belongs to no plan.
     picture
         what others have to respect of it: a scheme with its "force plans" in a column, "forces" in one picture, "wheels" from edge
         to edge.
@@ -76,7 +75,7 @@ class ViewKind:
     sizes: str = ""
     near: str = ""
     left: str = ""
-    stands: Literal["", "anywhere", "table", "forces"] = ""
+    stands: Literal["", "anywhere", "table"] = ""
     picture: Literal["", "force plans", "forces", "wheels"] = ""
     after: str = ""
     read: str = ""
@@ -97,7 +96,7 @@ MODULES = {name: module for module, names in {
     "linkage.friction": "friction",
     "linkage.given_position": "given_data given_position position_tables", "linkage.kinematic_frames": "kinematic_frames",
     "linkage.kinematics": "kinematics", "linkage.kinetics": "kinetics", "linkage.linkage_sizes": "linkage_sizes",
-    "linkage.moments": "moments", "linkage.synthesis": "false_positions synthesis",
+    "linkage.synthesis": "false_positions synthesis",
 }.items() for name in names.split()}
 """Modules of the functions below by the first part of their names, which arrangements keep where a module has another name."""
 
@@ -150,13 +149,11 @@ VIEWS = {view.draw: view for view in (
     ViewKind("kinetics.groups", "forces", parts="linkage_sizes.each_group", picture="force plans"),
     ViewKind("kinetics.lever", "forces", place="linkage_sizes.lever", picture="forces", read="composition.lever"),
     ViewKind("kinetics.results", "forces", place="linkage_sizes.results", name=marked("Results of the force analysis")),
-    ViewKind("moments.equations", "forces", sizes="moments.equations.sizes", stands="forces"),
-    ViewKind("moments.lever", "forces", sizes="moments.lever.sizes", near="kinetics.lever_near", stands="forces"),
     ViewKind("position_tables.reactions", "forces", sizes="position_tables.reactions.sizes",
              name=marked("Table of reactions at all positions")),
     # of whatever the sheet has
     ViewKind("hodograph.bearing", sizes="hodograph.bearing_sizes"),
-    ViewKind("details.dense", sizes="details.dense_sizes", near="details.dense_near", stands="anywhere",
+    ViewKind("details.dense", sizes="details.dense_sizes", near="details.dense_near",
              name=marked("Mark of an enlarged detail")),
     ViewKind("planet_motion.checks", sizes="planet_motion.checks.sizes", stands="anywhere"),
     ViewKind("planet_motion.inverted", sizes="planet_motion.inverted.sizes"),

@@ -12,14 +12,13 @@ With a sheet the order of the steps keeps ink from being mistaken for that of an
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tmm_sheets import apart, words
 from tmm_sheets.box import Box
@@ -40,24 +39,13 @@ from tmm_sheets.compare.cad.cad_comparison import CadFinding, CadOutcome, Compar
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace, normal
 from tmm_sheets.compare.cad.line_fit import ONE_PLACE, Numbers, gaps, left, lines, overlaps, union
 from tmm_sheets.compare.cad.plan_ink import Figure, PlanInk, lies_along
-from tmm_sheets.compare.cad.plan_judge import Cause, JudgedPlans, JudgedView, judge_plans, judge_view
+from tmm_sheets.compare.cad.plan_judge import JudgedPlans, judge_plans
 from tmm_sheets.compare.cad.plan_views import PlanRecord
 from tmm_sheets.compare.cad.registration import fitting, register
-from tmm_sheets.compare.codes import joined
-from tmm_sheets.compare.diagnosis.built_plan import (
-    BuiltPlan,
-    DrawnPlan,
-    PlanPoint,
-    drawn_plan,
-    drawn_positions,
-    errors_of,
-    rebuilt,
-    vanished,
-)
-from tmm_sheets.compare.diagnosis.hypotheses import replay
+from tmm_sheets.compare.diagnosis.built_plan import DrawnPlan, FigureOf, built_otherwise, led_elsewhere, rebuilt, vanished
 from tmm_sheets.compare.elements import Element, ElementView, KnownSheet, drawn, interruptions, known_sheet, sheet_numbers
 from tmm_sheets.compare.elements import views as views_of
-from tmm_sheets.compare.findings import Report, millimetres, verdict, worst
+from tmm_sheets.compare.findings import Report, verdict, worst
 from tmm_sheets.compare.placing import BESIDE, Placing, links, moved, symbol
 from tmm_sheets.drawing.marks import Drawing, Points
 from tmm_sheets.drawing.styles import line_type
@@ -72,72 +60,23 @@ ABOUT_VIEW = 15.0
 """How far beyond the box of a view its lines may go where a mistake was made, mm of paper."""
 
 
-def _plans_built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, moves: Mapping[ElementView, Placing],
-                           outcome: CadOutcome) -> dict[ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]:
-    """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet.
+def _figure_of(space: DrawingSpace, outcome: CadOutcome) -> FigureOf:
+    """The strokes about a plan that are not those of something else that is right, nor of lettering."""
+    read = cache(lambda: PlanInk(space, 1.0, scaled=True))
 
-    Plans on a sheet of ours are judged as those of any layout are (``cad/plan_judge.py``), but where the sheet has them. What would
-    lead a view elsewhere that is right was not done.
-    """
-    shapes = [f for f in outcome.findings if f.element.role in ("vector", "link") and f.element.kind == "line"]
-    wrong = Counter(f.element.view for f in shapes if f.verdict == "red")
-    if not wrong:
-        return {}
-    plans, errors = errors_of(project, known)
-    record, ink, out = PlanRecord(project), PlanInk(space, 1.0, scaled=True), {}
-    right = [drawn for view, n in Counter(f.element.view for f in shapes if f.verdict == "green").items()
-             if view not in wrong and n > 1 and (drawn := drawn_plan(known, plans, view)) is not None]
+    def figure(drawn: DrawnPlan, move: Placing) -> Figure | None:
+        ink = read()
+        mine = {e.number for e in drawn.vectors}
+        box = Box.around(move(np.array(drawn.view.box.corners)), ABOUT_VIEW)
+        near = [n for n, z in enumerate(((ink.a + ink.b) / 2).tolist()) if box.contains(z)]
+        others = [f.element for f in outcome.findings
+                  if f.verdict == "green" and f.element.number not in mine and f.element.kind != "text"]
+        ours = lines([p for e in others for p in (e.pieces or (e.points,))])
+        about = ours.only((np.maximum(ours.a.real, ours.b.real) > box.x0) & (np.minimum(ours.a.real, ours.b.real) < box.x1))
+        left = [n for n in near if not lies_along(ink.a[n], ink.b[n], about.a, about.b)]
+        return Figure.of_drawing(ink, np.array(left, dtype=np.intp)) if left else None
 
-    def possible(causes: Sequence[Cause]) -> bool:
-        value = replay(errors, [c for cause in causes for c in cause.changes])
-        return not any(drawn.moved(value) for drawn in right)
-
-    for view, count in wrong.items():
-        drawn = drawn_plan(known, plans, view) or drawn_positions(known, plans, view)
-        if drawn is None or drawn.plan.name not in {*record.plans, *record.forces}:
-            continue
-        strokes, move = _strokes(ink, outcome, drawn, moves.get(view, Placing())), moves.get(view, Placing())
-        judged = _judged(record, Figure(ink, strokes), drawn, move, possible) if len(strokes) else None
-        if judged is None or judged.kind != "mistake":
-            continue
-        made = judged.causes if judged.both else judged.causes[:1]
-        if points := drawn.moved(replay(errors, [c for cause in made for c in cause.changes])):
-            out[view] = _built(judged, drawn, count), points
-    order = list(plans)
-    return dict(sorted(out.items(), key=lambda x: order.index(x[1][0].step.plan) if x[1][0].step.plan in order else 0))
-
-
-def _judged(record: PlanRecord, figure: Figure, drawn: DrawnPlan, move: Placing,
-            possible: Callable[[Sequence[Cause]], bool]) -> JudgedView | None:
-    """The plan judged where the sheet has it; None where its scale differs along its axes."""
-    frame = drawn.frame
-    if frame.mirror or frame.mu[0] != frame.mu[1] or move.mirrored:
-        return None
-    turn = move.turn * np.exp(1j * frame.turn) / frame.mu[0]
-    figure.place = complex(turn), complex(move(frame.origin))
-    return judge_view(record, "", drawn.plan.name, tuple(drawn.positions), figure, float(np.angle(turn)), possible)
-
-
-def _built(judged: JudgedView, drawn: DrawnPlan, wrong: int) -> BuiltPlan:
-    first = judged.causes[0]
-    label = drawn.plan.labels[first.changes[0].at] if first.changes[0].at is not None else ""
-    alike = tuple(c.mistake for c in judged.causes[1:] if c.mistake is not None and not judged.both)
-    said = joined([c.remark for c in judged.causes], "; ") if judged.both else first.mistake or first.remark
-    assert said is not None
-    return BuiltPlan(said, max(wrong - len(judged.unexplained), 0), wrong, first.step, label or drawn.plan.labels[drawn.k],
-                     label if drawn.of_positions else "", alike)
-
-
-def _strokes(ink: PlanInk, outcome: CadOutcome, drawn: DrawnPlan, move: Placing) -> NDArray[np.intp]:
-    """Strokes about a plan that are not those of something else that is right, nor of lettering."""
-    mine = {e.number for e in drawn.vectors}
-    box = Box.around(move(np.array(drawn.vectors[0].view.box.corners)), ABOUT_VIEW)
-    near = [n for n, z in enumerate(((ink.a + ink.b) / 2).tolist()) if box.contains(z)]
-    others = [f.element for f in outcome.findings
-              if f.verdict == "green" and f.element.number not in mine and f.element.kind != "text"]
-    ours = lines([p for e in others for p in (e.pieces or (e.points,))])
-    about = ours.only((np.maximum(ours.a.real, ours.b.real) > box.x0) & (np.minimum(ours.a.real, ours.b.real) < box.x1))
-    return np.array([n for n in near if not lies_along(ink.a[n], ink.b[n], about.a, about.b)], dtype=np.intp)
+    return figure
 
 
 def as_built(finding: CadFinding | None, was: Element, now: Element, move: Placing, tolerance: float) -> CadFinding:
@@ -154,11 +93,7 @@ def as_built(finding: CadFinding | None, was: Element, now: Element, move: Placi
         return finding
     if was.role == "symbol" and finding.verdict != "green":
         return replace(finding, verdict=None, deviation=0.0, remark=codes.SYMBOL_ELSEWHERE(), missing=False)
-    follows = codes.AS_FOLLOWS(by=millimetres(off))
-    remark = follows if finding.verdict == "green" else joined((follows, finding.remark), "; ")
-    deviation = max(off, finding.deviation)
-    return replace(finding, verdict=verdict(deviation, tolerance), deviation=deviation, remark=remark,
-                   follows=finding.verdict == "green")
+    return led_elsewhere(finding, off, tolerance, finding.remark)
 
 
 def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[ElementView, Placing], tolerance: float) -> CadOutcome:
@@ -437,7 +372,7 @@ def _examined(project: Project, views: Path | None, pencil: float, say: Callable
 
     outcome = matched(laid.known.elements)
     say(tell("looking for what was done wrong"))
-    built = _plans_built_otherwise(project, laid.known, space, places.moves, outcome)
+    built = built_otherwise(project, laid.known, outcome.findings, places.moves, _figure_of(space, outcome))
     now = [rebuilt(e, built[e.view][1]) if e.view in built else e for e in laid.known.elements]
     kept = {v for v in places.share if not v.n}  # a frame alone is one
     again, gone = bool(built), cad_report.gone(outcome) - kept - built.keys()

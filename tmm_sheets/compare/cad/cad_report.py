@@ -17,25 +17,23 @@ from tmm_sheets.compare.cad import cad_extras
 from tmm_sheets.compare.cad.cad_comparison import CadFinding, CadOutcome, ExtraStroke, LookFinding
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
 from tmm_sheets.compare.cad.registration import Layout, Registration
-from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built
+from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built, told_view
 from tmm_sheets.compare.diagnosis.hypotheses import built_otherwise
 from tmm_sheets.compare.elements import Element, ElementView, drawn
 from tmm_sheets.compare.findings import (
     FindingRecord,
     Report,
-    as_text,
-    as_tree,
     called,
-    counted,
     millimetres,
     of_element,
     place,
     point,
+    reported,
     said_verdict,
     worst,
 )
 from tmm_sheets.compare.placing import moved
-from tmm_sheets.compare.story import Story, StoryPicture, StoryTable, ToldMistake, clipped
+from tmm_sheets.compare.story import StoryPicture, StoryTable, ToldMistake, clipped
 from tmm_sheets.drawing.marks import Role
 from tmm_sheets.numbers import told
 from tmm_sheets.words import tell, tell_n
@@ -189,8 +187,11 @@ def report(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> Repo
     lost = sorted(gone(outcome), key=lambda v: v.n)
     beside = tables_and_texts(outcome) & set(lost)
     records, start = _records(found, lost, beside, pencil)
-    tree = as_tree(
-        "cad", name, laid.known.n, records, start, [_unclaimed(k, x) for k, x in enumerate(outcome.extras, 1)],
+    tolerance = tell("tolerance {tolerance} mm").format(tolerance=told(f"{pencil:g}"))
+    return reported(
+        "cad", name, laid.known.n, path, (tolerance, _summary(found, set(lost), records)), records, start,
+        _mistakes(found, set(lost)), [*_tables(found, set(lost))], _unjudged(found, set(lost)), found.notes,
+        [_unclaimed(k, x) for k, x in enumerate(outcome.extras, 1)],
         {"missing_views": [v.name for v in lost], "missing_tables": [v.name for v in lost if v in beside],
          "not_drawn": sum(r.remark.code == "not-drawn" for r in records)},
         drawing=path.name, space=laid.space.name, tolerance=pencil,
@@ -200,12 +201,6 @@ def report(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> Repo
             {"shift": point(complex(places.moves[v](v.box.centre)) - v.box.centre), "size": round(places.moves[v].scale, 6)}
             if v in places.moves else {})} for v, s in places.share.items()],
         not_drawn=[{"view": x.view.name, "kind": x.kind, "count": x.count} for x in outcome.absent])
-    title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=laid.known.n, file=path.name)
-    tolerance = tell("tolerance {tolerance} mm").format(tolerance=told(f"{pencil:g}"))
-    said = _summary(found, set(lost), records)
-    story = Story(title, (tolerance, said, *found.notes), tuple(_mistakes(found, set(lost))), tuple(_tables(found, set(lost))),
-                  tuple(_unjudged(found, set(lost))))
-    return Report(as_text(story, said), tree, notes=found.notes, story=story, findings=records, start=start)
 
 
 def _records(found: ExaminedDrawing, lost: Sequence[ElementView], tables: Container[ElementView],
@@ -256,10 +251,6 @@ def _entities(found: ExaminedDrawing, numbers: Iterable[int]) -> list[dict[str, 
     return [found.laid.space.entities[k].tree for k in numbers]
 
 
-SHOWN = 10
-"""Most findings of a view that are told in words beside its picture; the table has all."""
-
-
 def _mistakes(found: ExaminedDrawing, lost: set[ElementView]) -> list[ToldMistake]:
     """What is wrong, view by view: those built on a wrong step first, then those with the most red."""
     of_view: dict[ElementView, list[CadFinding]] = {}
@@ -285,27 +276,17 @@ def _mistakes(found: ExaminedDrawing, lost: set[ElementView]) -> list[ToldMistak
 def _mistake(found: ExaminedDrawing, view: ElementView, bad: Sequence[CadFinding],
              first: ElementView | None) -> ToldMistake:
     """What is wrong in a view, its picture beside it; ``first`` is the view in which the same was done, of one that is built so."""
-    red = sum(f.verdict == "red" for f in bad)
-    built = found.built.get(view)
-    what = built.said() if built is not None else counted(bad)
-    others = [f for f in bad if not f.follows]
-    details = [tell("no. {number}, {element}: {what}").format(number=f.element.number, element=called(f.element), what=f.what)
-               for f in others[:SHOWN]]
-    if len(others) > SHOWN:
-        details.append(tell("and {n} more, in the table").format(n=len(others) - SHOWN))
-    again = ""
+    built, after, again = found.built.get(view), [], ""
+    rows = [(f.element.number, f.element, f.what) for f in bad if not f.follows]
     if built is not None:
-        after = [f for f in bad if f.follows and f.element.kind == "line" and f.element.role in ("vector", "link")]
-        said = [built.explained()]
+        led = [f for f in bad if f.follows and f.element.kind == "line" and f.element.role in ("vector", "link")]
         if first is not None and first != view:
             again = tell('the same as in view "{view}": it follows from there').format(view=first.name)
-        if after:
+        if led:
             told_all = tell("up to {by} mm off, as follows from the mistake: {lines}")
-            said.append(told_all.format(by=told(millimetres(max(f.deviation for f in after))),
-                                        lines=", ".join(dict.fromkeys(f.element.name for f in after))))
-        details = [*said, *details]
-    return ToldMistake(view.name, what, "red" if red else "amber", tuple(details), _picture(found, view, bad),
-                   named=built is not None, again=again[:1].upper() + again[1:])
+            after = [told_all.format(by=told(millimetres(max(f.deviation for f in led))),
+                                     lines=", ".join(dict.fromkeys(f.element.name for f in led)))]
+    return told_view(view, built, bad, rows, _picture(found, view, bad), after, again[:1].upper() + again[1:])
 
 
 def _picture(found: ExaminedDrawing, view: ElementView, bad: Sequence[CadFinding]) -> StoryPicture | None:

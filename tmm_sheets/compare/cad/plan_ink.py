@@ -18,15 +18,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
-from tmm_sheets.compare.cad.line_fit import hanging_together, shapes
+from tmm_sheets.compare.cad.line_fit import MOST, hanging_together, shapes
 from tmm_sheets.drawing.marks import Points
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
 # --- pencil: how exactly one draws -----------------------------------------------------------------------------------------
-TOLERANCE_MM = 0.5       # a stroke may lie beside its line, an end from its point
-SAME_POINT_MM = 0.5      # ends so near are one point of an arrow head
+TOLERANCE_MM = 0.5       # a stroke may lie beside its line, an end from its point, and ends that are one point from each other
 CARELESS_MM = 0.9        # both ends of a stroke may lie so far from those of its line
 PARALLEL_RAD = 0.012     # a stroke may be turned against its line
 UPRIGHT_RAD = 0.03       # a plan may be turned against the lettering
@@ -46,7 +45,7 @@ LETTERS_MM, LETTER_MM = (2.0, 10.5), 4.0  # heights of letters, and a usual one
 BARE_PRICE = 0.7         # of a mm of a line on bare paper, where one of unexplained ink is 1
 ABSENT_PRICE = 3.0       # of a class of lines that is not drawn at all
 DRAWN_SHARE = 0.85       # a line with so much ink is drawn
-LEFT_SHARE = 0.08        # of a stroke that may stay without a line
+LEFT_SHARE = 0.08        # of a stroke that may stay without a line, and of all ink that a mistake may leave
 PASSES_SHARE = 0.9       # what a line whose ends meet no end of ink counts at most
 LONGEST_LINES, LONGEST_STROKES = 12, 40  # laid on each other to find a place
 
@@ -140,6 +139,7 @@ class PlanInk:
         s2 = np.array(ends, dtype=complex).reshape(-1, 2)
         of = np.array(stroke, dtype=np.intp)
         keep = _each_once(s2)
+        keep = np.sort(keep[np.argsort(-np.abs(s2[keep, 1] - s2[keep, 0]), kind="stable")[:MOST]])
         s2, of = s2[keep], of[keep]
         filled = [*(a.points * self.scale for a in space.areas if a.solid and space.entities[a.entity].kind not in NOT_OF_PLANS),
                   *small]
@@ -235,7 +235,7 @@ def _is_bent(z: Points) -> bool:
     return float(np.median(np.abs(np.angle(d[1:] / d[:-1])))) < 0.5
 
 
-def _each_once(s: NDArray[np.complex128]) -> list[int]:
+def _each_once(s: NDArray[np.complex128]) -> Numbers:
     """Numbers of the strokes that have a length, coincident ones once."""
     seen, keep = set(), []
     for n, (a, b) in enumerate(np.round(s, 2).tolist()):
@@ -243,7 +243,16 @@ def _each_once(s: NDArray[np.complex128]) -> list[int]:
         if len(key) == 2 and key not in seen:
             seen.add(key)
             keep.append(n)
-    return keep
+    return np.array(keep, dtype=np.intp)
+
+
+def _close(z: Points, within: float) -> tuple[Numbers, Numbers]:
+    """Pairs of points, by their numbers and in both orders, that are no farther from each other, mm."""
+    import shapely
+
+    points = shapely.points(z.real, z.imag)
+    i, j = shapely.STRtree(points).query(points, predicate="dwithin", distance=within)
+    return i[i != j], j[i != j]
 
 
 def _joint(z: Points) -> list[tuple[complex, float]]:
@@ -323,17 +332,20 @@ def _open_heads(s: NDArray[np.complex128]) -> tuple[list[int], list[tuple[comple
     of = np.tile(np.arange(len(s)), 2)
     used: set[int] = set()
     heads = []
-    for i in np.flatnonzero(size[of] <= MAX_HEAD_MM).tolist():
+    first, second = _close(ends, TOLERANCE_MM)
+    begin = np.searchsorted(first, np.arange(len(ends) + 1))
+    for i in np.flatnonzero((size[of] <= MAX_HEAD_MM) & (begin[1:] > begin[:-1])).tolist():
         if of[i] in used:
             continue
-        at = np.flatnonzero((np.abs(ends - ends[i]) < SAME_POINT_MM) & (of != of[i]))
-        alike = np.abs(size[of[at]] - size[of[i]]) < 0.02 * size[of[i]] + SAME_POINT_MM
+        at = np.sort(second[begin[i]:begin[i + 1]])
+        at = at[of[at] != of[i]]
+        alike = np.abs(size[of[at]] - size[of[i]]) < 0.02 * size[of[i]] + TOLERANCE_MM
         for j in at[alike & (size[of[at]] <= MAX_HEAD_MM)].tolist():
             if of[j] in used or not 0.08 < abs(np.angle(away[j] / away[i])) / 2 < 0.5:
                 continue
             middle = away[i] + away[j]
             middle /= abs(middle)
-            slack = 0.02 + SAME_POINT_MM / 4 / size[of[i]]
+            slack = 0.02 + TOLERANCE_MM / 4 / size[of[i]]
             if any(k != j and of[k] not in used and abs(np.angle(away[k] / middle)) < slack and size[of[k]] > 0.9 * size[of[i]]
                    for k in at.tolist()):
                 heads.append((complex(ends[i]), complex(-middle)))
@@ -394,44 +406,43 @@ class Figure:
     ``strokes`` are their numbers in the ink, ``place`` scale and origin of the plan where they are known.
     """
 
-    def __init__(self, ink: PlanInk, strokes: Numbers, vectors: bool = False) -> None:
+    def __init__(self, strokes: Numbers, a: Points, b: Points, soft: NDArray[np.bool_] | None = None) -> None:
         self.strokes = strokes
         self.place: tuple[complex, complex] | None = None
-        self.a, self.b = ink.a[strokes], ink.b[strokes]
+        self.a, self.b = a, b
         self.size = np.abs(self.b - self.a)
         self.z, self.u, self.of = sample(self.a, self.b)
         self.count = np.bincount(self.of, minlength=len(strokes))
         self.ends = np.concatenate((self.a, self.b))
-        self.soft = ink.auxiliary[strokes] | self._barbs
-        if vectors:
-            self.soft |= self._without_heads(ink, strokes)
+        self.soft = np.zeros(len(strokes), bool) if soft is None else soft | self._barbs
         if self.soft.all():
             self.soft = np.zeros(len(strokes), bool)
-        weight = np.where(self.soft, 0.0, np.minimum(self.size, COUNTED_MM))
-        self.weight = weight
-        self.ink = float(weight.sum())
+        self.weight = np.where(self.soft, 0.0, np.minimum(self.size, COUNTED_MM))
+        self.ink = float(self.weight.sum())
         self.long = np.argsort(-np.where(self.soft, 0.0, self.size))[:LONGEST_STROKES]
         self.span = float(np.hypot(np.ptp(self.ends.real), np.ptp(self.ends.imag))) if len(strokes) else 0.0
+
+    @classmethod
+    def of_drawing(cls, ink: PlanInk, strokes: Numbers, vectors: bool = False) -> Figure:
+        """Some strokes of a drawing; of ``vectors`` those without heads may be construction lines."""
+        a, b = ink.a[strokes], ink.b[strokes]
+        soft = ink.auxiliary[strokes]
+        return cls(strokes, a, b, soft | _without_heads(ink, a, b, strokes) if vectors else soft)
+
+    def against(self, fit: Fit) -> float:
+        """What speaks against a plan at a place, mm: ink that it does not explain; what is not drawn may be left out."""
+        return fit.extra
 
     @cached_property
     def _barbs(self) -> NDArray[np.bool_]:
         """Half arrow heads that were not read: short, on the end of a longer stroke, the other end free."""
-        near = np.abs(self.ends[:, None] - self.ends) < SAME_POINT_MM
         n = np.tile(np.arange(len(self.a)), 2)
-        near &= n[:, None] != n
-        longer = (near & (self.size[n] > 1.5 * self.size[n][:, None])).any(1).reshape(2, -1)
-        alone = (~near.any(1)).reshape(2, -1)
+        i, j = _close(self.ends, TOLERANCE_MM)
+        i, j = i[n[i] != n[j]], j[n[i] != n[j]]
+        longer, alone = np.zeros((2, len(self.a)), bool), np.ones((2, len(self.a)), bool)
+        longer.ravel()[i[self.size[n[j]] > 1.5 * self.size[n[i]]]] = True
+        alone.ravel()[i] = False
         return np.asarray((self.size < MAX_HEAD_MM) & ((longer[0] & alone[1]) | (longer[1] & alone[0])))
-
-    def _without_heads(self, ink: PlanInk, strokes: Numbers) -> NDArray[np.bool_]:
-        """Of vectors, the strokes of looks of which none has a head, where another look has some."""
-        tips = np.array([tip for tip, _ in ink.heads], dtype=complex)
-        looks = ink.look[strokes]
-        if not len(tips):
-            return np.zeros(len(strokes), bool)
-        headed = (np.abs(self.ends[:, None] - tips).min(1) < 2 * TOLERANCE_MM).reshape(2, -1).any(0)
-        some = set(looks[headed].tolist())
-        return ~np.isin(looks, list(some)) if some else np.zeros(len(strokes), bool)
 
     def price(self, lines: PlanLines, scale: complex, origin: complex) -> Fit:
         """What a plan at a place costs: ink that it does not explain, and lines of it on bare paper."""
@@ -443,20 +454,15 @@ class Figure:
             p, q = (np.concatenate((x[shown], y)) for x, y in zip((a, b), self._endless(lines, scale, origin), strict=True))
             over = covered(self.z, self.u, p, q)
             left = 1 - np.bincount(self.of, over, len(self.a)) / self.count
-            z, u, of = sample(a[shown], b[shown])
-            hit = covered(z, u, self.a, self.b)
-            drawn[shown] = np.bincount(of, hit, len(shown)) / np.bincount(of, minlength=len(shown))
-            # A line that is drawn ends where it should: an end of ink at both its ends, else it only passes over other lines.
-            for e in (a, b):
-                reach = np.abs(e[shown][:, None] - self.ends).min(1) < 2.5 * TOLERANCE_MM
-                drawn[shown] = np.where(reach, drawn[shown], np.minimum(drawn[shown], PASSES_SHARE))
+            drawn[shown] = self.drawn(a[shown], b[shown])
             # A stroke from end to end of a line is that line, drawn carelessly.
-            for n in np.flatnonzero(left > LEFT_SHARE).tolist():
-                off = np.minimum(np.maximum(np.abs(a[shown] - self.a[n]), np.abs(b[shown] - self.b[n])),
-                                 np.maximum(np.abs(a[shown] - self.b[n]), np.abs(b[shown] - self.a[n])))
-                if off.min() < CARELESS_MM:
-                    left[n] = 0.0
-                    drawn[shown[off.argmin()]] = 1.0
+            n = np.flatnonzero(left > LEFT_SHARE)
+            begin, end = self.a[n, None], self.b[n, None]
+            off = np.minimum(np.maximum(np.abs(a[shown] - begin), np.abs(b[shown] - end)),
+                             np.maximum(np.abs(a[shown] - end), np.abs(b[shown] - begin)))
+            close = off.min(1) < CARELESS_MM
+            left[n[close]] = 0.0
+            drawn[shown[off[close].argmin(1)]] = 1.0
         unexplained = np.where(left > LEFT_SHARE, left, 0.0)
         if len(lines.through):  # supports and blocks stand at points of the mechanism
             points = np.concatenate((a, b))
@@ -475,6 +481,16 @@ class Figure:
             bare += cost if kind == MAIN else min(ABSENT_PRICE, cost)
         own = float(counted[is_shown & (kinds == MAIN)].sum())
         return Fit(extra + bare, extra, bare, scale, origin, drawn, left, self.ink, own)
+
+    def drawn(self, a: Points, b: Points) -> Floats:
+        """Share of each line from a to b that has ink."""
+        z, u, of = sample(a, b)
+        share = np.bincount(of, covered(z, u, self.a, self.b), len(a)) / np.bincount(of, minlength=len(a))
+        # A line that is drawn ends where it should: an end of ink at both its ends, else it only passes over other lines.
+        for e in (a, b):
+            reach = np.abs(e[:, None] - self.ends).min(1) < 2.5 * TOLERANCE_MM
+            share = np.where(reach, share, np.minimum(share, PASSES_SHARE))
+        return np.asarray(share)
 
     def _endless(self, lines: PlanLines, scale: complex, origin: complex) -> tuple[Points, Points]:
         """Lines without ends, as far as the figure reaches, and two beside each: a guide is drawn as one line or as two."""
@@ -553,6 +569,17 @@ class Figure:
         x, y = self.ends.real, self.ends.imag
         beside = np.hypot(max(x.min() - at.real, at.real - x.max(), 0), max(y.min() - at.imag, at.imag - y.max(), 0))
         return min(float(np.abs(at - self.a - t * e).min()), 1.5 * float(beside) + 20)
+
+
+def _without_heads(ink: PlanInk, a: Points, b: Points, strokes: Numbers) -> NDArray[np.bool_]:
+    """Of vectors, the strokes of looks of which none has a head, where another look has some."""
+    tips = np.array([tip for tip, _ in ink.heads], dtype=complex)
+    looks = ink.look[strokes]
+    if not len(tips):
+        return np.zeros(len(strokes), bool)
+    headed = (np.abs(np.concatenate((a, b))[:, None] - tips).min(1) < 2 * TOLERANCE_MM).reshape(2, -1).any(0)
+    some = set(looks[headed].tolist())
+    return ~np.isin(looks, list(some)) if some else np.zeros(len(strokes), bool)
 
 
 def reversed_heads(ink: PlanInk, lines: PlanLines, fit: Fit) -> list[int] | None:

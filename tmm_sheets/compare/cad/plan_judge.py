@@ -46,7 +46,6 @@ LEFT_MM = 2.0           # ink that may stay unexplained in a plan that is right,
 # --- probability: shares of ink or of a plan ----------------------------------------------------------------------------------
 LEFT_OF_RIGHT = 0.005   # that may stay unexplained in a plan that is right
 WHOLE = 0.03            # of a plan that may be on bare paper where it is there as it should be
-EXPLAINS = 0.08         # of the ink that a mistake may leave
 HALF = 0.4              # of the price from which a mistake explains enough for a second one to be looked for
 UNLIKE = 0.55           # of the ink that, unexplained, makes it another plan
 # --- paper, mm ------------------------------------------------------------------------------------------------------------------
@@ -54,10 +53,10 @@ FAR_MM = 150.0          # a title is no farther from ink that is not its plan
 NEAREST = 4             # figures tried under a title
 MIN_FIGURE_MM = 15.0    # a figure with less ink is no plan
 MIN_UNTITLED_MM = 40.0  # nor one with less ink that has no title
+MAX_STROKES, MAX_UNTITLED = 1000, 12  # nor one with more strokes; and of figures without a title so many are tried, the largest
 MIN_REST_MM = 5.0       # less ink is nothing
 MIN_MOVED_MM, MAX_MOVED_MM, ENDS = 1.0, 60.0, 14  # how far from its point an end of ink is tried, and how many such ends
 SAME_MM = 0.25          # mistakes whose points lie so near cannot be told apart
-TOLD = 3
 
 Kind = Literal["right", "mistake", "partly", "unlike", "bare"]
 """As it should be; with a mistake that is named; a few lines do not fit; another plan; a title without ink."""
@@ -166,7 +165,7 @@ class _Judge:
         free = np.ones(len(self.ink.a), bool)
         for _, _, _, claimed in whole:
             free[claimed] = False
-        rest = [f for some in self.ink.figures(np.flatnonzero(free)) if (f := Figure(self.ink, some)).ink > MIN_REST_MM
+        rest = [f for some in self._figures(np.flatnonzero(free)) if (f := Figure.of_drawing(self.ink, some)).ink > MIN_REST_MM
                 and not self.ink.is_frame(some)]
         open_titles = [n for n in range(len(self.titles)) if n not in {w[0] for w in whole}]
         out, used = self._with_mistakes(open_titles, rest)
@@ -180,7 +179,8 @@ class _Judge:
         bare = [n for n in open_titles if all(v.title != self.titles[n].text for v in out)]
         out += [self._without_ink(self.titles[n]) for n in bare]
         none = []
-        for f in (f for f in left if f.ink > MIN_UNTITLED_MM and len(f.strokes) > 2):
+        untitled = sorted((f for f in left if f.ink > MIN_UNTITLED_MM and len(f.strokes) > 2), key=lambda f: -f.ink)
+        for f in untitled[:MAX_UNTITLED]:
             v = self._untitled(f)
             if v is not None:
                 out.append(v)
@@ -191,12 +191,15 @@ class _Judge:
                 v.reversed_heads = reversed_heads(self.ink, v.lines, v.fit)
         return tuple(out), tuple(none)
 
+    def _figures(self, some: Numbers) -> list[Numbers]:
+        return [f for f in self.ink.figures(some) if len(f) <= MAX_STROKES]
+
     def _figure(self, strokes: Numbers, name: str) -> Figure:
-        return Figure(self.ink, strokes, vectors=name != "positions")
+        return Figure.of_drawing(self.ink, strokes, vectors=name != "positions")
 
     def _whole_plans(self) -> list[tuple[int, str, tuple[int, ...], Numbers]]:
         """Plans that are there as they should be: number of the title, plan, positions, its strokes."""
-        figures = self.ink.figures(np.arange(len(self.ink.a)))
+        figures = self._figures(np.arange(len(self.ink.a)))
         offers = []
         for n, title in enumerate(self.titles):
             for f, strokes in enumerate(figures):
@@ -286,17 +289,17 @@ class _Judge:
 
 
 def judge_view(record: PlanRecord, title: str, name: str, ks: tuple[int, ...], figure: Figure, turn: float,
-               possible: Callable[[Sequence[Cause]], bool] = bool) -> JudgedView:
+               possible: Callable[[Sequence[Cause]], bool] = bool, before: tuple[Cause, ...] = ()) -> JudgedView:
     """Judge a figure as a plan at some positions: as it should be, else with the mistakes that may have been made in it.
 
-    ``possible`` tells whether some may, by what else is known of the drawing.
+    ``possible`` tells whether some may, by what else is known of the drawing; ``before`` are those made in plans before it.
     """
     view = record.view(name)
     exact = view.lines(ks)
     usual = figure.laid(exact, turn, 12)
-    if usual is not None and usual.extra < LEFT_MM + LEFT_OF_RIGHT * usual.ink and usual.bare < 0.4 * usual.ink:
+    if usual is not None and figure.against(usual) < LEFT_MM + LEFT_OF_RIGHT * usual.ink and usual.bare < 0.4 * usual.ink:
         return _view(title, name, ks, view, "right", exact, exact, usual, figure)
-    search = _MistakeSearch(record, view, name, ks, exact, figure, turn, possible)
+    search = _MistakeSearch(record, view, name, ks, exact, figure, turn, possible, before)
     found = search.best(usual)
     if found is not None:
         return _view(title, name, ks, view, "mistake", exact, found.lines, found.fit, figure, search.alike(found),
@@ -327,11 +330,13 @@ class _MistakeSearch:
     """The mistakes that may have been made in a view, drawn again and laid on its ink."""
 
     def __init__(self, record: PlanRecord, view: PlanView, name: str, ks: tuple[int, ...], exact: PlanLines, figure: Figure,
-                 turn: float, possible: Callable[[Sequence[Cause]], bool]) -> None:
+                 turn: float, possible: Callable[[Sequence[Cause]], bool], known: tuple[Cause, ...]) -> None:
         self.record, self.view, self.name, self.ks, self.possible = record, view, name, ks, possible
         self.exact, self.figure, self.turn = exact, figure, turn
         self.errors: Errors = record.errors(view.plan)
         self.before = list(ordered(view.points, lambda s: [x for x in self.errors.arguments(s) if isinstance(x, Step)]))
+        here = set(self.before)
+        self.known = tuple(cause for cause in known if any(change.step in here for change in cause.changes))
         self.tried = 0
         self._all: list[_Found] = []
 
@@ -340,26 +345,28 @@ class _MistakeSearch:
         ink = self.figure.ink
         base = usual.price if usual is not None else float("inf")
         wrong = self._wrong_positions(usual)
-        self._all = self._cheapest([(cause,) for cause in self._causes(wrong, usual)])
+        self._all = self._cheapest([*([()] if self.known else []), *((cause,) for cause in self._causes(wrong, usual))])
         best = next((f for f in self._all if self.possible(f.causes)), None)
         if best is None:
             return None
-        if best.fit.extra > LEFT_MM + 0.01 * ink and base - best.price > HALF * min(base, ink):
+        if self.figure.against(best.fit) > LEFT_MM + 0.01 * ink and base - best.price > HALF * min(base, ink):
             # Most is explained, not all: another mistake besides.
             more = self._cheapest([(*best.causes, cause) for cause in self._causes(wrong, best.fit)])
             if more and more[0].price < best.price - GAIN and self.possible(more[0].causes):
                 best = more[0]
-        there = best.fit.extra < EXPLAINS * ink or (best.fit.bare <= WHOLE * best.fit.own and base - best.price > HALF * base)
+        explained = self.figure.against(best.fit) < LEFT_SHARE * ink
+        there = explained or (best.fit.bare <= WHOLE * best.fit.own and base - best.price > HALF * base)
         return best if there and best.price < base - GAIN else None
 
     def alike(self, found: _Found) -> tuple[Cause, ...]:
         """The causes found; of one alone all that draw the same, the cheapest first."""
         if found.second:
             return found.causes
-        heads, near = found.fit.at(found.lines.heads), [f for f in self._all if f.price < found.price + 1.5]
-        same = [f for f in near if len(f.lines.heads) == len(heads) and self.possible(f.causes)
+        heads = found.fit.at(found.lines.heads)
+        usual = [f for f in self._all if f.causes[0].mistake is not None or f.price <= found.price]
+        same = [f for f in usual if len(f.lines.heads) == len(heads) and self.possible(f.causes)
                 and np.abs(f.fit.at(f.lines.heads) - heads).max() < SAME_MM]
-        return tuple(f.causes[0] for f in same[:TOLD])
+        return tuple(f.causes[0] for f in same)
 
     def _wrong_positions(self, usual: Fit | None) -> tuple[int, ...]:
         """Of positions that are drawn all together those with lines on bare paper, three at most."""
@@ -370,11 +377,11 @@ class _MistakeSearch:
         return tuple(self.ks[n] for n in sorted(gone))[:3]
 
     def _cheapest(self, some: Sequence[tuple[Cause, ...]]) -> list[_Found]:
-        """Causes that come together, the cheapest first."""
+        """Causes that come together, beside those known of plans before, the cheapest first."""
         out = []
         self.tried += len(some)
         for made in some:
-            value = replay(self.errors, [c for one in made for c in one.changes])
+            value = replay(self.errors, [c for one in (*self.known, *made) for c in one.changes])
             try:
                 lines = self.view.lines(self.ks, value)
             except (ValueError, ZeroDivisionError, TypeError, IndexError):
@@ -383,7 +390,7 @@ class _MistakeSearch:
                 lines.tails, self.exact.tails)
             fit = None if same else self.figure.laid(lines, self.turn, 3)
             if fit is not None:
-                out.append(_Found(fit.price + sum(c.price for c in made), made, fit, lines))
+                out.append(_Found(fit.price + sum(c.price for c in made), made or self.known[-1:], fit, lines))
         return sorted(out, key=lambda f: f.price)
 
     def _causes(self, ks: Sequence[int], fit: Fit | None) -> Iterator[Cause]:

@@ -13,20 +13,17 @@ import numpy as np
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.plan_ink import DRAWN_SHARE, MAIN, OTHERS, Fit
-from tmm_sheets.compare.cad.plan_judge import JudgedPlans, JudgedView
+from tmm_sheets.compare.cad.plan_judge import SAME_MM, JudgedPlans, JudgedView
 from tmm_sheets.compare.cad.plan_views import CLASSES
 from tmm_sheets.compare.codes import Remark, joined
-from tmm_sheets.compare.diagnosis.hypotheses import built_otherwise
-from tmm_sheets.compare.findings import FindingRecord, Outcome, Report, as_text, as_tree, millimetres, point
-from tmm_sheets.compare.story import Story, StoryPicture, StoryTable, ToldMistake, clipped
+from tmm_sheets.compare.diagnosis.built_plan import SHOWN
+from tmm_sheets.compare.diagnosis.hypotheses import TOLD, built_otherwise
+from tmm_sheets.compare.findings import FindingRecord, Outcome, Report, millimetres, point, reported
+from tmm_sheets.compare.story import StoryPicture, StoryTable, ToldMistake, clipped
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
 
-MOVED_MM = 0.25
-"""A line of a plan that was built otherwise lies elsewhere from so much on, mm."""
-SHOWN = 10
-"""Most lines of a view that are told in words."""
 HINT = marked("write over each figure which plan it is and at which position")
 
 
@@ -61,20 +58,15 @@ def plan_report(project: str, sheet: int, path: Path, space: DrawingSpace, judge
     absent = sum(r.remark.code == "not-drawn" for r in records)
     said = tell("{green} green, {amber} amber, {red} red, {skipped} not judged; {extra} extra").format(
         green=count["green"], amber=count["amber"], red=count["red"], skipped=count["not-judged"], extra=len(extra))
-    notes = [*notes, *_notes(judged)]
-    tree = as_tree("cad", project, sheet, records, start, extra, {"not_drawn": absent}, drawing=path.name, space=space.name,
-                   tolerance=pencil, views=[_listed_view(v) for v in views])
     mistakes = tuple(_told(v, judged) for v in views if (v.whole is not None and v.whole.verdict == "red") or v.wrong)
     whole = (ToldMistake(tell("the whole drawing"), r.remark.said(), "red", named=True) for r in start if not r.view)
-    mistakes = (*whole, *mistakes)
-    title = tell("{project}, sheet {sheet}: {file}").format(project=project, sheet=sheet, file=path.name)
     head = tuple(map(tell, ("title", "plan", "verdict", "right", "wrong", "not drawn")))
-    rows = [_row(v) for v in views]
-    about = (tell("tolerance {tolerance} mm").format(tolerance=told(f"{pencil:g}")), said, *notes)
-    unjudged = (*_not_drawn(views), *_figures_without_title(judged))
     verdicts = tuple("red" if v.wrong or (v.whole is not None and v.whole.verdict == "red") else "" for v in views)
-    story = Story(title, about, mistakes, (StoryTable(tell("Views"), head, tuple(rows), verdicts),), unjudged)
-    return Report(as_text(story, said), tree, notes=tuple(notes), story=story, findings=records, start=start)
+    return reported(
+        "cad", project, sheet, path, (tell("tolerance {tolerance} mm").format(tolerance=told(f"{pencil:g}")), said), records, start,
+        (*whole, *mistakes), [StoryTable(tell("Views"), head, tuple(map(_row, views)), verdicts)],
+        (*_not_drawn(views), *_figures_without_title(judged)), [*notes, *_notes(judged)], extra, {"not_drawn": absent},
+        drawing=path.name, space=space.name, tolerance=pencil, views=[_listed_view(v) for v in views])
 
 
 def exact_lines(judged: JudgedPlans) -> list[Points]:
@@ -111,7 +103,7 @@ def _of_view(v: JudgedView, pencil: float) -> _OfView:
     lines = v.lines
     off = _moved_lines(v)
     if v.kind == "mistake":
-        done = joined([c.remark for c in v.causes], "; " if v.both else codes.OR)
+        done = joined([c.remark for c in v.causes[:TOLD]], "; " if v.both else codes.OR)
         assert done is not None
         h = v.causes[0].mistake
         named = {"kind": h.kind, "mistake": h.words} if h is not None else {}
@@ -160,7 +152,7 @@ def _moved_lines(v: JudgedView) -> dict[int, float]:
         now = v.fit.at(np.array([v.lines.tails[i], v.lines.heads[i]]))
         there = now * np.nan if was is None else v.fit.at(np.array([v.exact.tails[was], v.exact.heads[was]]))
         off = float(abs(now[1] - now[0])) if was is None else float(np.abs(now - there).max())
-        if off > MOVED_MM:
+        if off > SAME_MM:
             out[i] = off
     return out
 

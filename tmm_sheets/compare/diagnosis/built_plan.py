@@ -1,38 +1,33 @@
 """Plans that were built on a wrong step: what was done, and the plan as it would be with that.
 
-A plan whose lines do not lie where ours do is drawn again with each mistake that can be made in it, and with each of its points
-where the drawing has the end of a line; the mistake with which most of the plan has ink is what was done. The plan is then compared
-as it was built: its lines are found, though not in their places. A :class:`Drawing` tells what
-has ink, in a CAD file or a photograph.
+A plan whose lines do not lie where ours do is judged by its ink, as plans of any layout are (``cad/plan_judge.py``): strokes of a
+CAD file, or what a photograph shows. Where a mistake explains it, it is then compared as it was built: its lines are found, though
+not in their places.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, get_args
+from functools import cache, partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.codes import Own, Remark, Sentence
-from tmm_sheets.compare.diagnosis.hypotheses import (
-    Change,
-    Hypothesis,
-    Kind,
-    any_of,
-    displaced,
-    hypotheses,
-    of_other_positions,
-    replay,
-)
-from tmm_sheets.compare.elements import Element, ElementView, KnownSheet, plans_of, sampled
-from tmm_sheets.compare.findings import FindingRecord, millimetres
-from tmm_sheets.compare.placing import HINGE, shafts
+from tmm_sheets.compare.cad.plan_ink import DRAWN_SHARE, MIN_DRAWN_MM, Figure
+from tmm_sheets.compare.cad.plan_judge import GAIN, MIN_MOVED_MM, Cause, judge_view
+from tmm_sheets.compare.cad.plan_views import PlanRecord
+from tmm_sheets.compare.codes import Own, Remark, Sentence, joined
+from tmm_sheets.compare.diagnosis.hypotheses import KINDS, TOLD, Hypothesis, any_of, replay
+from tmm_sheets.compare.elements import Element, ElementView, KnownSheet, plans_of
+from tmm_sheets.compare.findings import Finding, FindingRecord, Found, called, counted, millimetres, verdict
+from tmm_sheets.compare.placing import HINGE, Placing, shafts
+from tmm_sheets.compare.story import StoryPicture, ToldMistake
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import letter_of
-from tmm_sheets.construction.step import Plan, Step, ordered
+from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.drawing.marks import Arc, Fill, PlacedFrame, Points
 from tmm_sheets.words import marked, tell
 
@@ -43,10 +38,6 @@ AT_POINT = 0.03
 """Distance within which an end of a line is at a point of the plan, mm of our sheet."""
 BESIDE = 10.0
 """How far from its point a letter may stand, mm of our sheet."""
-SHOWS = 1.0
-"""How far a point must be moved for a mistake to show, mm of our sheet."""
-DRAWN = 1.0
-"""A vector that would be shorter than this, mm of our sheet, is not drawn."""
 POSITIONS = "positions"
 """Name of the plan of the positions."""
 MARK = 6.0
@@ -69,7 +60,7 @@ class PlanPoint:
     label: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DrawnPlan:
     """A plan on the sheet: its vectors, and the points at which their ends are; several may be in one place."""
 
@@ -83,7 +74,7 @@ class DrawnPlan:
         """Its points in a construction drawn again; none where none of them moves or one cannot be built."""
         new = tuple(replace(p, now=now) for p, now in zip(self.points, self.places(value).tolist(), strict=True))
         far = np.abs([p.now - p.was for p in new])
-        return new if len(far) and (far <= PAPER).all() and far.max() >= SHOWS else ()  # NaN is on no paper either
+        return new if len(far) and (far <= PAPER).all() and far.max() >= MIN_MOVED_MM else ()  # NaN is on no paper either
 
     def places(self, value: Callable[[Step], Any]) -> Points:
         """Where its points are in a construction drawn again; NaN of what cannot be built."""
@@ -96,6 +87,11 @@ class DrawnPlan:
         return complex(self.frame(complex(made[k] if made.ndim else made)))
 
     @property
+    def view(self) -> ElementView:
+        """The view that shows it."""
+        return self.vectors[0].view
+
+    @property
     def positions(self) -> list[int]:
         """Numbers of the positions it is of."""
         return sorted({p.k for p in self.points if p.label} or {self.k})
@@ -104,12 +100,6 @@ class DrawnPlan:
     def of_positions(self) -> bool:
         """Whether it is the mechanism at all its positions."""
         return self.plan.name == POSITIONS
-
-    def back(self, z: complex) -> complex:
-        """The point of the plan at a place on the sheet."""
-        w = (z - self.frame.origin) * np.exp(-1j * self.frame.turn)
-        w = np.conj(w) if self.frame.mirror else w
-        return complex(w.real * self.frame.mu[0], w.imag * self.frame.mu[1])
 
 
 def drawn_plan(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView) -> DrawnPlan | None:
@@ -193,7 +183,7 @@ def rebuilt(e: Element, points: Sequence[PlanPoint]) -> Element:
         new = between(e, points)
         if np.array_equal(new, e.points):
             return e
-        if abs(new[1] - new[0]) < DRAWN:
+        if abs(new[1] - new[0]) < MIN_DRAWN_MM:
             return replace(e, points=new[[0, 0]], fills=(), marks=())
         turn = (new[1] - new[0]) / (e.points[1] - e.points[0])
         turn /= abs(turn)
@@ -228,40 +218,25 @@ def vanished(e: Element) -> bool:
     return e.kind == "line" and not e.marks and e.length == 0
 
 
+def led_elsewhere(f: Found, off: float, tolerance: float, rest: Remark | None) -> Found:
+    """A finding on an element as it was built, judged by its place, ``off`` mm from there; ``rest`` is what is wrong besides."""
+    follows = codes.AS_FOLLOWS(by=millimetres(off))
+    green, deviation = f.verdict == "green", max(off, f.deviation)
+    return replace(f, verdict=verdict(deviation, tolerance), deviation=deviation, follows=green,
+                   remark=follows if green else joined((follows, rest), "; "))
+
+
 def _head(f: Points, was: Points, now: Points, turn: complex) -> Points:
     """A head goes with the end it is at."""
     k = int(np.abs(was - f[0]).argmin())
     return np.asarray(now[k] + (f - was[k]) * turn)
 
 
-KINDS = get_args(Kind)
-"""Kinds of mistakes, the more usual first."""
-Inked = Callable[[Points], float]
-"""Share of a line, by both its ends, mm of our sheet, that ink in its direction covers in a drawing."""
-
-WHOLE = 0.85
-"""Share of a line that must have ink for the line to be drawn."""
-MOST = 0.8
-"""Share of a plan, by length, that must have ink where a mistake leads, for the plan to be built on it."""
-GAIN, OF_REST = 0.12, 0.6
-"""By how much that must be more than has ink in its place, or, where only short lines are wrong, by what share of what has none."""
-AS_GOOD = 0.97
-"""Share of the best explanation with which a more usual mistake is as good."""
-EQUAL = 0.02
-"""Difference of shares of ink that tells nothing."""
-WEIGHT = 25.0
-"""A longer vector tells no more than one of this length, mm of our sheet."""
-BEYOND, ASIDE = 1.0, 0.3
-"""How far beyond the end of a line it is looked whether it goes on, and how near another one has the same ink, mm of our sheet."""
-SAME, TOLD = 0.1, 3
-"""How near points of a plan are, mm of our sheet, that two mistakes lead to the same place; how many such mistakes are told."""
-NEW_INK = 2
-"""Places of ink, 1 mm, that a plan with a point elsewhere must have more: else its line only lies on another one."""
-FARTHEST = 250.0
-"""A point is sought among the tips of lines no farther than this from its place, mm."""
-
-
 AT_POSITION = Sentence("built-otherwise", marked("{mistake} (position {position})"))
+
+
+SHOWN = 10
+"""Most findings of a view that are told in words beside its picture; the table has all."""
 
 
 @dataclass(frozen=True)
@@ -295,6 +270,28 @@ class BuiltPlan:
         return tell("this explains {n} of {all} wrong lines of the plan").format(n=self.explains, all=self.of)
 
 
+def told_view(view: ElementView, built: BuiltPlan | None, bad: Sequence[Finding], rows: Sequence[tuple[int, Element, str]],
+              picture: StoryPicture | None, after: Sequence[str] = (), again: str = "") -> ToldMistake:
+    """What is wrong in a view, its picture beside it.
+
+    Parameters
+    ----------
+    view, built : the view, and what its plan was built on
+    bad : what is wrong in it
+    rows : number, element and words of each row of the table, the worst first
+    picture : what it looks like
+    after, again : what follows from the mistake; what is said where a view before has it
+    """
+    details = [tell("no. {number}, {element}: {what}").format(number=number, element=called(e), what=what)
+               for number, e, what in rows[:SHOWN]]
+    if len(rows) > SHOWN:
+        details.append(tell("and {n} more, in the table").format(n=len(rows) - SHOWN))
+    what = built.said() if built is not None else counted(bad)
+    details = details if built is None else [built.explained(), *after, *details]
+    red = any(f.verdict == "red" for f in bad)
+    return ToldMistake(view.name, what, "red" if red else "amber", tuple(details), picture, named=built is not None, again=again)
+
+
 def of_built(built: Mapping[ElementView, BuiltPlan]) -> dict[ElementView, FindingRecord]:
     """What is listed of views that were built on mistakes: what was done in a view before is told there, and follows."""
     first: dict[Remark, FindingRecord] = {}
@@ -309,32 +306,10 @@ def of_built(built: Mapping[ElementView, BuiltPlan]) -> dict[ElementView, Findin
     return out
 
 
-@dataclass(frozen=True)
-class _Mistake:
-    """What was done wrong: one of the usual mistakes, or a point that is off; and what to replay."""
-
-    said: Hypothesis | Remark
-    changes: tuple[Change, ...]
-
-
-@dataclass(frozen=True)
-class _Found:
-    """A mistake with where it takes the points of a plan, and the share of the plan that has ink there."""
-
-    share: float
-    points: Sequence[PlanPoint]
-    mistake: _Mistake
-
-
-@dataclass(frozen=True)
-class StudentDrawing:
-    """A view of a drawing, by mm of our sheet: what share of a line has ink, which places, the ends of its lines; its scale."""
-
-    inked: Inked
-    ink: Callable[[Points], NDArray[np.bool_]]
-    tips: Sequence[complex]
-    scale: float = 1.0
-
+Built = Mapping[ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]
+"""Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet."""
+FigureOf = Callable[[DrawnPlan, Placing], Figure | None]
+"""The ink that may be a plan, in a drawing in which its view has moved so; None where there is none."""
 
 
 def errors_of(project: Project, known: KnownSheet) -> tuple[dict[str, Plan], Errors]:
@@ -343,162 +318,86 @@ def errors_of(project: Project, known: KnownSheet) -> tuple[dict[str, Plan], Err
     return plans, Errors([(plans[f.plan], f.mu[0]) for f in known.sheet.frames if f.plan in plans])
 
 
-def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementView, Sequence[Element]],
-                    seen: Callable[[ElementView], StudentDrawing]) -> dict[
-                        ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]:
-    """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet.
+def built_otherwise(project: Project, known: KnownSheet, findings: Iterable[Finding], moves: Mapping[ElementView, Placing],
+                    figure_of: FigureOf) -> Built:
+    """Views whose plans were built on a mistake, in the order of drawing.
 
-    ``wrong`` are the vectors of views that are not where they belong, as they should be.
+    Plans on a sheet of ours are judged as those of any layout are (``cad/plan_judge.py``), but where the sheet has them. What was
+    done in a plan before leads on to those that follow from it; what would lead a view elsewhere that is right was not done.
     """
-    if not wrong:
+    shapes = [f for f in findings if f.element.role in ("vector", "link") and f.element.kind == "line"]
+    wrong: dict[ElementView, list[Element]] = {}
+    for f in shapes:
+        if f.verdict == "red":
+            wrong.setdefault(f.element.view, []).append(f.element)
+    if not wrong or POSITIONS not in project.parts:
         return {}
     plans, errors = errors_of(project, known)
-    shown = {view: drawn for view in dict.fromkeys(e.view for e in known.elements)
-             if (drawn := drawn_plan(known, plans, view)) is not None}
-    drawings = {view: seen(view) for view in shown}
-    share = {view: _share(drawn, drawings[view], drawn.points) for view, drawn in shown.items()}
-    before: list[_Mistake] = []
+    order, record = list(plans), PlanRecord(project)
+    shown = {view: drawn for view in wrong if (drawn := drawn_plan(known, plans, view) or drawn_positions(known, plans, view))
+             is not None and drawn.plan.name in {*record.plans, *record.forces}}
+    right = [drawn for view, n in Counter(f.element.view for f in shapes if f.verdict == "green").items()
+             if view not in wrong and n > 1 and (drawn := drawn_plan(known, plans, view)) is not None]
 
-    weight = {view: sum(e.length for e in drawn.vectors) for view, drawn in shown.items()}
+    before: dict[Cause, BuiltPlan] = {}
 
-    def gain(mistake: _Mistake) -> float:
-        """By how much more ink the whole sheet has with a mistake; infinitely less where a plan has it where it should be."""
-        value = _replay(errors, (*before, mistake))
-        more = {view: _share(drawn, drawings[view], points) - share[view]
-                for view, drawn in shown.items() if (points := drawn.moved(value))}
-        if min(more.values(), default=0.0) <= -GAIN:
-            return -np.inf
-        return sum(weight[view] * m for view, m in more.items())
+    @cache
+    def placed(drawn: DrawnPlan) -> Figure | None:
+        """The ink of a plan where the sheet has it; None where it has none, or its scale differs along its axes."""
+        move, frame = moves.get(drawn.view, Placing()), drawn.frame
+        figure = figure_of(drawn, move)
+        if figure is None or frame.mirror or frame.mu[0] != frame.mu[1] or move.mirrored:
+            return None
+        figure.place = complex(move.turn * np.exp(1j * frame.turn) / frame.mu[0]), complex(move(frame.origin))
+        return figure
 
-    order, out = list(plans), {}
-    alike: dict[int, Sequence[Hypothesis]] = {}
+    def against(drawn: DrawnPlan, *value: Callable[[Step], Any]) -> float:
+        figure = placed(drawn)
+        fit = None if figure is None else figure.laid(record.view(drawn.plan.name).lines(drawn.positions, *value), 0.0)
+        return figure.against(fit) if figure is not None and fit is not None else 0.0
+
+    def with_those_before(causes: Iterable[Cause]) -> Callable[[Step], Any]:
+        return replay(errors, [change for cause in dict.fromkeys((*before, *causes)) for change in cause.changes])
+
+    def possible(drawn: DrawnPlan, causes: Sequence[Cause]) -> bool:
+        """Whether a plan can be drawn so, and no plan that is right would lie elsewhere."""
+        if not drawn.moved(value := with_those_before(causes)):
+            return False
+        return not any(other.moved(value) and against(other, value) > against(other) + GAIN for other in right)
+
+    def told_first(cause: Cause) -> tuple[int, int, int]:
+        """Of causes that draw one plan alike: which leaves least of the whole sheet, then the more usual and the earlier one."""
+        value = with_those_before([cause])
+        left = sum(against(drawn, value) for drawn in shown.values())
+        kind = KINDS.index(cause.mistake.kind) if cause.mistake is not None else len(KINDS)
+        return round(left / GAIN), kind, errors.order(cause.step)
+
+    by_number = {e.number: e for e in known.elements}  # in their places on the sheet
+    out = {}
     for view, drawn in sorted(shown.items(), key=lambda x: order.index(x[1].plan.name)):
-        found = _explained(drawn, errors, drawings[view], share[view], before, gain) if view in wrong else None
-        if found is not None:
-            numbers = {e.number for e in wrong[view]}
-            there = {e.number: line for e in drawn.vectors for line in [between(e, found.points)]
-                     if drawings[view].inked(line) >= WHOLE}
-            # A line that goes elsewhere is wrong, though the ink of another one made it look right.
-            numbers |= {e.number for e in drawn.vectors
-                        if e.number in there and np.abs(there[e.number] - e.points[[0, -1]]).max() >= SHOWS}
-            h = found.mistake.said
-            share[view] = found.share
-            if found.mistake not in before:
-                before.append(found.mistake)
-            explained = len(numbers & there.keys()), len(numbers)
-            if isinstance(h, Remark):
-                out[view] = BuiltPlan(h, *explained, found.mistake.changes[0].step, drawn.plan.labels[drawn.k]), found.points
-                continue
-            if id(h) not in alike:
-                of = list(shown.values()) if found.mistake in before else [drawn]
-                alike[id(h)] = _alike(h, [m for m in before if m.said is not h], drawn, of, errors)
-            label = "" if h.at is None else drawn.plan.labels[h.at]
-            first, *others = alike[id(h)]
-            out[view] = BuiltPlan(first, *explained, first.step, label, alike=tuple(others)), found.points
-    return out
-
-
-def explains(usual: float, now: float) -> bool:
-    """Whether a mistake explains a plan of which so much has ink in its place, and so much with the mistake."""
-    return now - usual > min(GAIN, max(EQUAL, OF_REST * (1 - usual)))
-
-
-def possible(shown: Iterable[DrawnPlan], errors: Errors) -> list[Hypothesis]:
-    """Mistakes that can be made in some plans and in what they come from, the more usual kinds first, each once."""
-    found: dict[tuple[object, ...], Hypothesis] = {}
-    for drawn in shown:
-        steps = [p.step for p in drawn.points]
-        before = list(ordered(steps, lambda step: [a for a in errors.arguments(step) if isinstance(a, Step)]))
-        for k in drawn.positions:
-            for h in (*hypotheses(before, k, drawn.plan.labels), *of_other_positions(steps, k, drawn.plan.labels)):
-                found.setdefault((h.words, id(h.step), h.at, h.other), h)
-    return sorted(found.values(), key=lambda h: KINDS.index(h.kind))
-
-
-def _replay(errors: Errors, mistakes: Iterable[_Mistake]) -> Callable[[Step], Any]:
-    """The construction with mistakes."""
-    return replay(errors, [c for m in mistakes for c in m.changes])
-
-
-def _alike(mistake: Hypothesis, others: Sequence[_Mistake], drawn: DrawnPlan, of: Sequence[DrawnPlan],
-           errors: Errors) -> Sequence[Hypothesis]:
-    """A mistake that was found in a plan with others that draw the same of it and ``of`` all: no drawing tells these apart."""
-    value = _replay(errors, [*others, _Mistake(mistake, mistake.changes)])
-    same = [mistake]
-    for h in possible([drawn], errors):
-        if h.words != mistake.words or h.step is not mistake.step:
-            other = _replay(errors, [*others, _Mistake(h, h.changes)])
-            if all(np.allclose(plan.places(other), plan.places(value), 0, SAME, equal_nan=True) for plan in (drawn, *of)):
-                same.append(h)
-    return same[:TOLD]
-
-
-def _explained(drawn: DrawnPlan, errors: Errors, drawing: StudentDrawing, usual: float, before: Sequence[_Mistake],
-               gain: Callable[[_Mistake], float]) -> _Found | None:
-    """The mistake with which most of a plan has ink, if that is much more than has ink without it, ``usual``.
-
-    What was done wrong in plans ``before`` it may lead on to this one; where that does, nothing else is looked for. Of mistakes
-    with which it has as much ink that one is told which explains most of the whole sheet.
-    """
-    def tried(mistakes: Iterable[_Mistake], made: Sequence[_Mistake]) -> list[_Found]:
-        out = []
-        for m in mistakes:
-            points = drawn.moved(_replay(errors, (*made, m)))
-            share = _share(drawn, drawing, points) if points else 0.0
-            if share >= MOST and explains(usual, share):
-                out.append(_Found(share, points, m))
-        return out
-
-    led_on = tried(before, [])
-    if before:
-        led_on += [replace(f, mistake=before[-1]) for f in tried(before[-1:], before[:-1])]
-    if led_on:
-        return max(led_on, key=lambda f: f.share)
-    usual_ones = _best(tried((_Mistake(h, h.changes) for h in possible([drawn], errors)), before), gain)
-    if usual_ones:
-        most = max(gained for gained, _ in usual_ones)
-        return next(f for gained, f in usual_ones if gained >= AS_GOOD * most)
-    # A point may lie on another one, or on another vector: that only makes what is wrong disappear.
-    off = [(_ink(drawn, drawing, f.points), f) for _, f in _best(tried(_points_off(drawn, drawing), before), gain)]
-    most, best = max(off, key=lambda x: x[0], default=(0, None))
-    return best if most > _ink(drawn, drawing, drawn.points) + NEW_INK else None
-
-
-def _best(found: Sequence[_Found], gain: Callable[[_Mistake], float]) -> list[tuple[float, _Found]]:
-    """Those with which a plan has most ink, or nearly, of those with which the whole sheet has more; with by how much more."""
-    gains = [(more, f) for f in found if (more := gain(f.mistake)) > 0]
-    best = max((f.share for _, f in gains), default=0.0)
-    return [(more, f) for more, f in gains if f.share >= AS_GOOD * best]
-
-
-def _points_off(drawn: DrawnPlan, drawing: StudentDrawing) -> Iterator[_Mistake]:
-    """One of the points of a plan at the end of a line of the drawing, with how far off that is."""
-    tips = np.array(drawing.tips, dtype=complex)
-    near = tips[np.abs(tips - complex(np.mean([p.was for p in drawn.points]))) < FARTHEST].tolist()
-    for p in drawn.points:
-        if not isinstance(p.step.args[0] if p.step.args else None, Step):
+        figure = placed(drawn)
+        if figure is None or figure.place is None:
             continue
-        for at in near:
-            off = abs(at - p.was)
-            if SHOWS < off < FARTHEST:
-                by = drawn.back(at) - drawn.back(p.was)
-                yield _Mistake(codes.POINT_MOVED_ON(point=letter_of(p.step), distance=millimetres(off * drawing.scale)),
-                               (Change(p.step, displaced(by), drawn.k),))
+        judged = judge_view(record, "", drawn.plan.name, tuple(drawn.positions), figure, float(np.angle(figure.place[0])),
+                            partial(possible, drawn), tuple(before))
+        if judged.kind != "mistake":
+            continue
+        led_on = before.get(judged.causes[0])
+        causes = judged.causes if judged.both or led_on is not None else tuple(sorted(judged.causes, key=told_first))
+        made = causes if judged.both else causes[:1]
+        if points := drawn.moved(with_those_before(made)):
+            now = np.array([moves.get(view, Placing())(between(by_number[e.number], points)) for e in wrong[view]])
+            count = int((figure.drawn(*now.T) >= DRAWN_SHARE).sum()), len(now)
+            built = replace(led_on or _built(causes, judged.both, drawn), explains=count[0], of=count[1])
+            before |= dict.fromkeys((c for c in made if c not in before), built)
+            out[view] = built, points
+    return dict(sorted(out.items(), key=lambda x: order.index(x[1][0].step.plan) if x[1][0].step.plan in order else 0))
 
 
-def _share(drawn: DrawnPlan, drawing: StudentDrawing, points: Sequence[PlanPoint]) -> float:
-    """Share of a plan's vectors, by length, that are drawn where its points come to lie; what becomes too short is not drawn."""
-    there = whole = 0.0
-    lines = [(max(length, e.length), line) for e in drawn.vectors for line in [between(e, points)]
-             for length in [abs(line[1] - line[0])] if length > DRAWN]
-    for length, line in lines:
-        weight = min(length, WEIGHT)
-        whole += weight
-        there += weight * (drawing.inked(line) >= WHOLE)
-    return there / whole if whole else 0.0
-
-
-def _ink(drawn: DrawnPlan, drawing: StudentDrawing, points: Sequence[PlanPoint]) -> int:
-    """How much ink a plan's vectors have together where its points come to lie, in places of a millimetre."""
-    some = np.concatenate([sampled(between(e, points), 0.5)[0] for e in drawn.vectors if abs(np.diff(between(e, points))[0]) > 0.5])
-    return len(np.unique(np.round(some[drawing.ink(some)])))
+def _built(causes: Sequence[Cause], both: bool, drawn: DrawnPlan) -> BuiltPlan:
+    first, *others = causes[:TOLD]
+    label = drawn.plan.labels[first.changes[0].at] if first.changes[0].at is not None else ""
+    alike = tuple(c.mistake for c in others if c.mistake is not None and not both)
+    said = joined([c.remark for c in causes], "; ") if both else first.mistake or first.remark
+    assert said is not None
+    return BuiltPlan(said, 0, 0, first.step, label or drawn.plan.labels[drawn.k], label * drawn.of_positions, alike)

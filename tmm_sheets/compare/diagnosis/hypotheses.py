@@ -20,7 +20,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from inspect import signature
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -121,7 +121,10 @@ def of_position(k: int) -> Done:
 
 Kind = Literal["coriolis", "normal", "sense", "parallel", "intersection", "inertia", "force", "moment", "left out", "radii",
                "mirror", "crank", "neighbour", "scale"]
+KINDS = get_args(Kind)
 """Kinds of mistakes, the more usual ones first."""
+TOLD = 3
+"""Mistakes that are told of those that cannot be told apart."""
 RARITY: Mapping[str, float] = {"both parallel": 1.0, "crank": 2.0, "across": 2.0, "upside down": 2.0, "vector scale": 2.0}
 """Price of what is done more rarely than the rest, mm of ink that it must explain more; by the key of its words."""
 

@@ -166,7 +166,7 @@ WHOLES = 3
 """Mistakes with the whole table that are looked for."""
 MOST = 10
 """Mistakes that are looked for; where there are more, another mechanism was drawn."""
-ANOTHER, FIRST_TRIED = 0.45, 1
+ANOTHER, FIRST_TRIED = 1 / 3, 1
 """Share of red numbers from which on, where the first mistakes looked for leave half of that, it is another variant."""
 SHARE = 0.5
 """Share of the tolerance that a mistake must make of a number to explain it."""
@@ -378,7 +378,7 @@ def _chains(evidence: Evidence, own: OwnNumbers, computed: Mapping[int, list[Jud
             continue
         start.starts = True
         tried += 1
-        found = explanation(evidence, int(first)) if tried <= MOST else None
+        found = explanation(evidence, int(first), most_is_wrong) if tried <= MOST else None
         if found is not None:
             open_[_told(evidence, start, found, beyond)] = False
             if found.then is not None and (second := _shows(evidence, start, found.then)) is not None:

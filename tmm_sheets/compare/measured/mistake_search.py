@@ -11,17 +11,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 from math import isfinite
-from typing import TypeVar, get_args
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.compare.codes import Own
 from tmm_sheets.compare.diagnosis.hypotheses import (
+    KINDS,
     MIRRORED,
+    TOLD,
     Change,
     Hypothesis,
-    Kind,
     computed_with,
     displaced,
     hypotheses,
@@ -159,9 +160,6 @@ EQUAL = 0.98
 """Share of the best discrete explanation with which another cannot be told from it."""
 APART = 0.05
 """Share by which a scale factor is another one."""
-TOLD = 3
-"""Mistakes that are told of those that cannot be told apart."""
-_KINDS = get_args(Kind)
 
 
 def done_otherwise(evidence: Evidence, i: int) -> Explanation | None:
@@ -202,7 +200,7 @@ def mistakes_before(evidence: Evidence, i: int, others: Sequence[int] = ()) -> l
     if j.entry.plan in MIRRORED:
         points = [s for s in evidence.whole if s.plan == j.entry.plan and s.rule.gives in ("point", "vector")]
         found += of_other_positions(points, k, evidence.labels)
-    return sorted(found, key=lambda h: _KINDS.index(h.kind))
+    return sorted(found, key=lambda h: KINDS.index(h.kind))
 
 
 def _computed_with(evidence: Evidence, i: int) -> Iterator[Hypothesis]:
@@ -242,15 +240,17 @@ NEARLY = 0.9
 """Share of the best explanation with which another is as good."""
 
 
-def displaced_step(evidence: Evidence, i: int) -> Explanation | None:
+def displaced_step(evidence: Evidence, i: int, most_is_wrong: bool = False) -> Explanation | None:
     """The displaced step behind a red number; None when it explains nothing else, or where the number is where it ought to be.
 
     A number within its tolerance may be red because it does not follow from the student's own: no step need be displaced for it.
+    Where ``most_is_wrong`` only a step that explains half of all that is off is drawn again: of another variant there is none.
     """
     if abs(evidence.judged[i].deviation) <= evidence.judged[i].tolerance:
         return None
     possible = (_mistake(evidence, place) for place in evidence.places[i] if _can_be_wrong(evidence, place))
-    candidates = sorted(possible, key=lambda m: -m.score)
+    least = float(np.sum(loss(evidence.left / evidence.allowed))) / 2 if most_is_wrong else 0.0
+    candidates = sorted((m for m in possible if m.score >= least), key=lambda m: -m.score)
     candidates = [_mistake(evidence, m.place, exact=True) for m in candidates[:TRIED]]
     alone = float(loss(evidence.left[i] / evidence.allowed[i]))
     own = evidence.judged[i].entry.head
@@ -472,7 +472,7 @@ def _seen_in(j: JudgedValue) -> str:
     return j.entry.terms[-1][0].plan if j.entry.kind in ("result", "sense") and j.entry.terms else j.entry.plan
 
 
-def explanation(evidence: Evidence, i: int) -> Explanation | None:
+def explanation(evidence: Evidence, i: int, most_is_wrong: bool = False) -> Explanation | None:
     """What explains a number best; None when nothing does: a slip in reading or computing this one."""
     done = done_otherwise(evidence, i)
     if done is not None:
@@ -482,7 +482,7 @@ def explanation(evidence: Evidence, i: int) -> Explanation | None:
             alike[evidence.by_place[place][0]] = True
         if reached.sum() > 1 and done.score > NEARLY * float(np.sum(loss((evidence.left / evidence.allowed)[alike]))):
             return done  # nothing can explain much more
-    off = displaced_step(evidence, i)
+    off = displaced_step(evidence, i, most_is_wrong)
     best = off if done is None or (off is not None and off.score * NEARLY > done.score) else done
     both = two_mistakes(evidence, i)
     if best is None or both is None:

@@ -29,9 +29,10 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.lost_ink import Mask, at
+from tmm_sheets.compare.photo.own_place import ALONG_STEP
 from tmm_sheets.compare.photo.profiles import NO_GREY, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.traces import ELSEWHERE, Head, InkTrace, Owners
+from tmm_sheets.compare.photo.traces import ELSEWHERE, END_STEP, STEP, Head, InkTrace, Owners
 from tmm_sheets.drawing.styles import line_type
 
 LEAST = 2.4
@@ -40,14 +41,12 @@ SHAFT = 1.0
 """mm behind a head, and from the other end, beyond which a line has no head any more."""
 SHORTEST = 4.0
 """mm of a vector behind its head by which the line's own ink is known."""
-STEP, ACROSS = 0.2, 0.1
-"""mm between the places along a line, and to its sides, at which ink is looked at."""
-ASIDE = np.arange(-14, 15) * ACROSS
+ASIDE = np.arange(-14, 15) * STEP
 MIDDLE = np.abs(ASIDE) < 0.35
 """Places to its sides, and those of the line itself."""
 AHEAD, BEHIND = 2.0, 1.4
 """mm beyond the tip from which on, and behind a head up to which ink is looked at: there a head has none."""
-NEAR, FARTHER = STEP * np.array(sorted(range(-6, 7), key=abs)), STEP * np.arange(-8, 21, 2)
+NEAR, FARTHER = END_STEP * np.array(sorted(range(-6, 7), key=abs)), END_STEP * np.arange(-8, 21, 2)
 """mm by which a head may lie farther back than its place, the most likely first; by more it is no head in its place, but a head."""
 SIZES = ((1.0, 1.0), (0.85, 1.0), (0.7, 1.0), (1.0, 0.7), (0.7, 0.7))
 """Length and width of heads drawn by hand by those of the drawing."""
@@ -160,7 +159,7 @@ class _End:
         half = wide * _half_width(e) * self.back / length + self.grown / 2
         inside = (np.abs(ASIDE - self.aside) <= half[:, None]) & ((self.back >= 0) & (self.back <= length))[:, None]
         # As blurred as a line is.
-        full = cv2.GaussianBlur(inside.astype(np.float32), (7, 5), sigmaX=0.2 / ACROSS, sigmaY=0.2 / STEP)
+        full = cv2.GaussianBlur(inside.astype(np.float32), (7, 5), sigmaX=0.2 / STEP, sigmaY=0.2 / END_STEP)
         return np.clip(self.own[MIDDLE].max() * full - self.own, 0, None)
 
     def _soft_head(self, long: float, wide: float) -> Any:
@@ -175,16 +174,16 @@ class _End:
         line = (np.abs(aside) <= pen / 2) & behind
         half = wide * _half_width(e) * self.back / length
         head = (np.abs(aside) <= half[:, None]) & behind & (self.back <= length)[:, None]
-        with_head, without = (cv2.GaussianBlur(some.astype(np.float32), (0, 0), sigmaX=blur / ACROSS, sigmaY=blur / STEP)
+        with_head, without = (cv2.GaussianBlur(some.astype(np.float32), (0, 0), sigmaX=blur / STEP, sigmaY=blur / END_STEP)
                               for some in (line | head, line))  # fmt: skip
         return dark * np.clip(with_head - without, 0, None)
 
     def _like(self, wanted: Any, length: float, shift: float) -> _Likeness:
-        by = round(shift / STEP)
+        by = round(shift / END_STEP)
         wanted = np.roll(wanted, by, 0)
         if by > 0:
             wanted[:by] = 0
-        about = (self.back >= shift - 2 * STEP) & (self.back <= shift + length + BEHIND)
+        about = (self.back >= shift - 2 * END_STEP) & (self.back <= shift + length + BEHIND)
         flank = about[:, None] & (np.abs(ASIDE) >= 0.25)
         told = flank & self.known
         weight, whole = float((wanted[told] ** 2).sum()), float((wanted[flank] ** 2).sum())
@@ -284,7 +283,7 @@ class _Paper:
         left, right = _run_under(others, pen)
         # In steps of pixels a line that lies under all of it shows beside it here and there.
         covered = bool(others[:, MIDDLE].any(1).mean() > ALL_ALONG)
-        about = BESIDE + covered * ACROSS
+        about = BESIDE + covered * STEP
         close = np.abs(ASIDE - (right - left) / 2) <= (left + right) / 2 + about
         under = close & ((others.mean(0) > ALONG) | covered)
         free = ~_widened(others & ~close)
@@ -293,20 +292,20 @@ class _Paper:
             own = _usual(ink, free & ~hidden)
         if own is None:
             return None
-        back = np.arange(-AHEAD, head + BEHIND + FARTHER[-1] + STEP, STEP)
+        back = np.arange(-AHEAD, head + BEHIND + FARTHER[-1] + END_STEP, END_STEP)
         ink, others, letters, hidden = self._beside(e, tip, way, back)
         dark = own[MIDDLE].max()
         inked = own - own.min() > 0.5 * (dark - own.min())
         low = float(ASIDE[~inked & (ASIDE < 0)].max(initial=-np.inf))
         high = float(ASIDE[~inked & (ASIDE >= 0)].min(initial=np.inf))
         # With paper to both sides, or it is others' ink that begins there.
-        if np.isfinite(high - low) and high - low - ACROSS >= BROAD * 2 * _half_width(e):
+        if np.isfinite(high - low) and high - low - STEP >= BROAD * 2 * _half_width(e):
             return None
-        way_to_tip = (back >= 2 * STEP) & (back <= head + 2 * SHAFT)
+        way_to_tip = (back >= 2 * END_STEP) & (back <= head + 2 * SHAFT)
         lined = float((ink[way_to_tip][:, MIDDLE].max(1) > 0.5 * dark).mean())
         legible = ~_widened(others & ~under) & ~hidden
         aside = (low + high) / 2 if abs(low + high) <= 2 * CENTRED else 0.0
-        grown = max(0.0, ACROSS * float(inked.sum()) - left - right)
+        grown = max(0.0, STEP * float(inked.sum()) - left - right)
         return _End(e, back, ink - own, legible & ~letters, legible, own, grown, lined, max(left, right) > pen, aside)
 
     def _beside(self, e: Element, tip: complex, way: complex, back: Floats) -> tuple[Any, Any, Any, Any]:
@@ -341,7 +340,7 @@ def _run_under(others: Any, pen: float) -> tuple[float, float]:
     lie aside of the middle of a link.
     """
     bare = others.mean(0) < ALL_ALONG
-    left, right = (float(np.abs(ASIDE[bare & side]).min(initial=np.inf)) - 1.5 * ACROSS for side in (ASIDE <= 0, ASIDE >= 0))
+    left, right = (float(np.abs(ASIDE[bare & side]).min(initial=np.inf)) - 1.5 * STEP for side in (ASIDE <= 0, ASIDE >= 0))
     return (max(left, pen), max(right, pen)) if 2 * pen + THICKER < left + right <= 2 * THICKEST else (pen, pen)
 
 
@@ -471,7 +470,6 @@ def _head(t: InkTrace, paper: _Paper) -> tuple[Head, _End | None]:
 
 THICK = 0.35
 """mm of width from which on a line hides whether a vector in one stroke with it was drawn."""
-THIN_STEP = 0.3  # mm between places along a line
 THIN_ASIDE = np.arange(-9, 10) * 0.1
 """mm to its sides within which there must be no other thick line."""
 OWN = np.abs(THIN_ASIDE) <= 0.75
@@ -527,10 +525,10 @@ def _stroke(t: InkTrace, ink: Any, thick: Owners, hidden: Mask) -> _Stroke | Non
     assert t.at is not None
     length = abs(t.at[-1] - t.at[0])
     way = (t.at[-1] - t.at[0]) / length
-    p = t.at[0] + way * np.arange(SPARED, length - SPARED, THIN_STEP)
+    p = t.at[0] + way * np.arange(SPARED, length - SPARED, ALONG_STEP)
     places = p[:, None] + 1j * way * THIN_ASIDE
     free = ~thick.others(t.element.number, places).any(1) & ~at(p, hidden)
-    if free.sum() * THIN_STEP < THIN_LEAST:
+    if free.sum() * ALONG_STEP < THIN_LEAST:
         return None
     profile = sample(ink, pixels(places[free])).astype(np.float64)[:, OWN]
     pieces = [np.median(part, 0) for part in np.array_split(profile, max(len(profile) // PIECE, 1))]

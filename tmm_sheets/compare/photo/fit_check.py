@@ -39,10 +39,10 @@ MATCH = 0.5
 """Least share of a sheet's lines that must be where they belong."""
 IN_PLACE, NEAR = 0.5, 3.0
 """mm from its place within which a line is in place, or has ink near."""
-CLOSE = 0.9
-"""Share of lines in place from which on paper that is not smooth is believed, and a frame of which a side is hidden."""
 WHOLE = 0.9
-"""Least share of a side's points that has a line in a fit that is beyond doubt."""
+"""Share of lines in place from which on paper that is not smooth is believed, and a frame of which a side is hidden; of a side's
+points that has a line in a fit that is beyond doubt.
+"""
 SIDE, ALONGSIDE = 0.6, 0.5
 """Least share of a side's points that must have a line for the side to count as seen, as a whole and beside a cell."""
 SIDES, SIDES_OF_PLACED = 3, 2
@@ -96,7 +96,7 @@ class FitCheck:
         """Whether all is right but what lies beside a side that is not seen."""
         return (self.match >= MATCH and len(self.astray) <= LOCAL * self.judged and not len(self.lost)
                 and not len(self.shifted)
-                and int((self.sides >= SIDE).sum()) >= (SIDES_OF_PLACED if self.match >= CLOSE and not len(self.astray) else SIDES))
+                and int((self.sides >= SIDE).sum()) >= (SIDES_OF_PLACED if self.match >= WHOLE and not len(self.astray) else SIDES))
 
     @property
     def framed(self) -> bool:
@@ -106,7 +106,7 @@ class FitCheck:
     @property
     def sound(self) -> bool:
         """Whether no better map need be sought."""
-        close = self.match >= CLOSE
+        close = self.match >= WHOLE
         framed = float(np.sort(self.sides)[4 - SIDES if close else 0]) >= WHOLE  # no other frame brings a hidden side to light
         # Where all the frame is seen and nearly all lines are in place, no other map has those of a cell that are not.
         placed = not len(self.astray) or (close and float(self.sides.min()) >= WHOLE)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import copy_context
 from dataclasses import dataclass, replace
+from functools import cache
 from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,10 +16,20 @@ import numpy as np
 
 from tmm_sheets import apart
 from tmm_sheets.compare import codes, view_places
-from tmm_sheets.compare.codes import Remark, joined
+from tmm_sheets.compare.cad.plan_ink import COUNTED_MM, Figure, Fit, Floats
+from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.diagnosis import built_plan
-from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, PlanPoint, StudentDrawing, between, rebuilt, vanished
-from tmm_sheets.compare.elements import Element, ElementView, KnownSheet, dashed, known_sheet, sampled, sheet_numbers
+from tmm_sheets.compare.diagnosis.built_plan import (
+    Built,
+    BuiltPlan,
+    DrawnPlan,
+    PlanPoint,
+    between,
+    led_elsewhere,
+    rebuilt,
+    vanished,
+)
+from tmm_sheets.compare.elements import SAMPLED, Element, ElementView, KnownSheet, dashed, known_sheet, sampled, sheet_numbers
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.findings import Report, millimetres, verdict
 from tmm_sheets.compare.photo import lost_ink, need_opencv, overlay, photograph, placed_views, rectification, small_marks, tracing
@@ -31,7 +42,8 @@ from tmm_sheets.compare.photo.photograph import SMALLER, Photograph
 from tmm_sheets.compare.photo.profiles import line_level, noise_level, pixels, sample
 from tmm_sheets.compare.photo.rectification import LONGEST, Rectified, rectify
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Map
-from tmm_sheets.compare.photo.traces import ELSEWHERE, ExtraInk, InkTrace, as_lines
+from tmm_sheets.compare.photo.traces import ELSEWHERE, ONE_POINT, ExtraInk, InkTrace, as_lines
+from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import told
@@ -40,13 +52,9 @@ from tmm_sheets.words import marked, tell
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
-STEP = 0.5
-"""Between places along a line that are looked at, mm."""
 REACH = 0.6
 """How far beside its place a pencil's line may run in a straightened picture, mm."""
 OFFSETS = np.arange(-REACH, REACH + 0.05, 0.1)
-WIDE = 7
-"""Pixels of a picture within which a place has the ink of another."""
 ALONG = 7
 """So many neighbouring places are averaged: a line that only crosses is no ink along this one."""
 SHOWN = 0.5
@@ -59,9 +67,6 @@ an end that shows, which is told more exactly."""
 CONTRADICTED = 3
 """Where every so many wrong lines of a plan have one that stays in its place though it would be led elsewhere, another mistake was
 made."""
-AT_POINT = 0.5
-"""From a point of the plan within which a line ends in it, mm."""
-Built = Mapping[ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]
 
 
 def built_otherwise(project: Project, known: KnownSheet, findings: Sequence[PhotoFinding], ink: Any,
@@ -75,26 +80,40 @@ def built_otherwise(project: Project, known: KnownSheet, findings: Sequence[Phot
     ink, hidden
         The rectified sheet, and where it is hidden.
     """
-    wrong: dict[ElementView, list[Element]] = {}
-    for f in findings:
-        if f.element.role == "vector" and f.element.kind == "line" and f.verdict == "red":
-            wrong.setdefault(f.element.view, []).append(f.element)
-    if not wrong:
-        return {}
     level = line_level(ink)
-    near = cv2.dilate(ink, np.ones((WIDE, WIDE), np.uint8))
-    tips: dict[ElementView, list[complex]] = {}
-    for f in findings:
-        if f.verdict == "red" and f.element.kind == "line" and f.trace.at is not None:
-            tips.setdefault(f.element.view, []).extend(f.trace.at[[0, -1]].tolist())
 
-    def seen(view: ElementView) -> StudentDrawing:
-        return StudentDrawing(lambda line: inked(ink, line, level, hidden), lambda z: sample(near, pixels(z)) > level,
-                              tips.get(view, []))
+    def figure(drawn: DrawnPlan, _: Placing) -> Figure | None:
+        of = [f for f in findings if f.element.view == drawn.view and f.element.role == "vector"]
+        return _PicturedPlan(of, lambda line: inked(ink, line, level, hidden)) if of else None
 
-    built = built_plan.built_otherwise(project, known, wrong, seen)
+    built = built_plan.built_otherwise(project, known, findings, {}, figure)
     of = {view: [f for f in findings if f.element.view == view] for view in built}
     return {view: b for view, b in built.items() if not _contradicted(b, of[view]) and _borne_out(b, of[view])}
+
+
+class _PicturedPlan(Figure):
+    """A plan in a photograph: the picture tells what has ink, no strokes do; points may be where the ends of lines were traced.
+
+    What lies in its place may be the helper line under a vector: that speaks against nothing here.
+    """
+
+    def __init__(self, findings: Sequence[PhotoFinding], inked: Callable[[Points], float]) -> None:
+        none = np.zeros(0, complex)
+        super().__init__(np.zeros(0, np.intp), none, none)
+        lines = [f for f in findings if f.element.kind == "line"]
+        off = [f.trace.at[[0, -1]] for f in lines if f.verdict == "red" and f.trace.at is not None]
+        self.ends = np.array(off, dtype=complex).ravel()
+        self.ink = float(sum(min(f.element.length, COUNTED_MM) for f in lines))
+        self._inked = cache(lambda a, b: inked(np.array([a, b])))
+
+    def against(self, fit: Fit) -> float:
+        """Lines on bare paper: what is not drawn is missing."""
+        return fit.bare
+
+    def drawn(self, a: Points, b: Points) -> Floats:
+        """Share of each line from a to b that has ink."""
+        ends = zip(np.round(a, 2).tolist(), np.round(b, 2).tolist(), strict=True)
+        return np.array([self._inked(*line) for line in ends], dtype=np.float64)
 
 
 def _borne_out(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequence[PhotoFinding]) -> bool:
@@ -111,7 +130,7 @@ def _borne_out(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequence[
         if f.element.role == "vector" and f.element.kind == "line" and f.verdict == "red" and f.trace.at is not None:
             if np.abs(f.trace.at[[0, -1]] - between(f.element, points)).max() > ELSEWHERE:
                 return False
-            led |= {was for was in moved if np.abs(f.element.points[[0, -1]] - was).min() < AT_POINT}
+            led |= {was for was in moved if np.abs(f.element.points[[0, -1]] - was).min() < ONE_POINT}
     return len(led) > 1
 
 
@@ -171,16 +190,11 @@ def _judged(f: PhotoFinding | None, first: PhotoFinding, found: Rectified, penci
         return f
     if _stays(first, now.points):
         return first
-    follows = codes.AS_FOLLOWS(by=millimetres(off))
     beyond = f.trace.status == "missing" and not all(map(PAPER.contains, now.points.tolist()))
-    rest = codes.OFF_THE_PAPER() if beyond else f.remark
-    remark = follows if f.verdict == "green" else joined((follows, rest), "; ")
-    deviation = max(off, f.deviation)
-    colour = verdict(deviation, f.tolerance)
-    if first.verdict == "green" and first.trace.status == "measured" and not _told(f, now.points) and colour == "red":
-        colour = "amber"
-    return replace(f, verdict=colour, deviation=deviation, remark=remark, at=was.middle if beyond else f.at,
-                   follows=f.verdict == "green")
+    led = led_elsewhere(f, off, f.tolerance, codes.OFF_THE_PAPER() if beyond else f.remark)
+    if first.verdict == "green" and first.trace.status == "measured" and not _told(f, now.points) and led.verdict == "red":
+        led = replace(led, verdict="amber")
+    return replace(led, at=was.middle) if beyond else led
 
 
 def inked(ink: Any, line: Points, level: float, hidden: Mask | None = None) -> float:
@@ -189,10 +203,10 @@ def inked(ink: Any, line: Points, level: float, hidden: Mask | None = None) -> f
     A line that is hidden in part is judged by the rest of it, if that is the greater part: what is not seen speaks for nothing.
     """
     size = float(abs(line[1] - line[0]))
-    if size < 2 * ENDS + STEP:
+    if size < 2 * ENDS + SAMPLED:
         return 1.0  # too short to be told
     along = (line[1] - line[0]) / size
-    points, normals = sampled(np.array([line[0] + ENDS * along, line[1] - ENDS * along]), STEP)
+    points, normals = sampled(np.array([line[0] + ENDS * along, line[1] - ENDS * along]))
     profile = sample(ink, pixels(points[:, None] + normals[:, None] * OFFSETS))
     there = cv2.blur(profile, (1, ALONG), borderType=cv2.BORDER_REPLICATE).max(1) > level
     shown = np.ones(len(points), bool) if hidden is None else ~hidden_at(points, hidden)

@@ -22,11 +22,21 @@ import numpy as np
 from tmm_sheets.compare.elements import Element, interruptions, sampled
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.traces import ELSEWHERE, FARTHEST_OFF, LOOSE_STYLES, ONE_POINT, SAMPLING, InkTrace, Owners, open_line
+from tmm_sheets.compare.photo.traces import (
+    ELSEWHERE,
+    END_STEP,
+    FARTHEST_OFF,
+    LOOSE_STYLES,
+    ONE_POINT,
+    SAMPLING,
+    STEP,
+    InkTrace,
+    Owners,
+    open_line,
+)
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
-STEP = 0.2  # mm between places along the line
 ASIDE = np.linspace(-0.3, 0.3, 5)  # mm to either side where its ink may be
 BESIDE = np.linspace(-0.7, 0.7, 13)  # mm to either side where another's ink may come from; less than a pixel apart
 GAP, PATTERN_GAP, BEYOND_GAP = 1.6, 3.5, 0.3
@@ -122,12 +132,12 @@ def _way(e: Element, z: Points, reach: float, tip: float | None, gaps: Sequence[
     run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(z)))))
     u = z[0] - z[min(int(np.searchsorted(run, 1.0)) + 1, len(z) - 1)]
     u /= max(abs(u), 1e-9)
-    t = np.arange(-min(reach + 2.0, run[-1] / 2), reach + STEP / 2, STEP)
+    t = np.arange(-min(reach + 2.0, run[-1] / 2), reach + END_STEP / 2, END_STEP)
     p = np.where(t <= 0, np.interp(-t, run, z.real) + 1j * np.interp(-t, run, z.imag), z[0] + u * np.maximum(t, 0))
     along = np.gradient(p)
     lettered = np.zeros(len(t), bool)
     for a, b in gaps:
-        lettered |= (-t >= a * run[-1] - STEP) & (-t <= b * run[-1] + STEP)
+        lettered |= (-t >= a * run[-1] - END_STEP) & (-t <= b * run[-1] + END_STEP)
     return _Way(e, tip, t, p, 1j * along / np.maximum(np.abs(along), 1e-9), lettered)
 
 
@@ -145,13 +155,13 @@ def _end(way: _Way, across: Any, hidden: Any, crowded: Any, level: float) -> flo
     if most < min(shown, 0.0):
         rest = slice(extent[1] + 1, int((t < min(shown, 0.0)).sum()))
         weak = own[extent[1] + 2 : int((t < 0).sum())]
-        paler = pale[rest].sum() >= max(PALER / STEP, MOST * (~hidden[rest]).sum())
+        paler = pale[rest].sum() >= max(PALER / END_STEP, MOST * (~hidden[rest]).sum())
         faded = way.element.style in LOOSE_STYLES and crowded[rest].sum() > 0.5 * len(crowded[rest]) > 0
         lifted = _lifted(dark[rest], DRAWN_TO if way.element.role == "construction" else RESTS)
         return float("nan") if (len(weak) and weak.mean() > 0.3) or faded or paler or lifted else most - shown
     beyond = least - shown
     seen = own[(t > pen + BLUR) & (t <= least)]
-    if beyond > 0 and len(seen) and seen.sum() * STEP >= min(SEEN, beyond) and seen.mean() > SHARE:
+    if beyond > 0 and len(seen) and seen.sum() * END_STEP >= min(SEEN, beyond) and seen.mean() > SHARE:
         return beyond
     return float("nan") if most - min(least, 0.0) > VAGUE else 0.0
 
@@ -162,7 +172,7 @@ def _lifted(rest: Any, least: float) -> bool:
     There must be at ``least`` so many mm of that.
     """
     bare = int(np.argmax(rest)) if rest.any() else len(rest)
-    return bool(bare * STEP <= LIFTED and (len(rest) - bare) * STEP >= least and rest[bare:].all())
+    return bool(bare * END_STEP <= LIFTED and (len(rest) - bare) * END_STEP >= least and rest[bare:].all())
 
 
 def _ink_along(way: _Way, across: Any, hidden: Any, level: float) -> tuple[Any, Any, Any]:
@@ -189,7 +199,7 @@ def _extent(way: _Way, dark: Any, own: Any) -> tuple[int, int] | None:
     for i in np.flatnonzero(dark).tolist():
         # A pencil that was lifted goes on with ink that is nobody else's.
         bare = BEYOND_GAP if i >= inside else PATTERN_GAP if own[i : i + RESUMED].all() else gap
-        if (i - last) * STEP > bare + 1e-9:
+        if (i - last) * END_STEP > bare + 1e-9:
             break
         last = i
         if own[i]:
@@ -198,7 +208,7 @@ def _extent(way: _Way, dark: Any, own: Any) -> tuple[int, int] | None:
         return (0, last) if dark[last] else None
     high = low
     for i in (np.flatnonzero(dark[low:]) + low).tolist():
-        if (i - high) * STEP > torn + 1e-9:
+        if (i - high) * END_STEP > torn + 1e-9:
             break
         high = i
     return low, high
@@ -207,8 +217,8 @@ def _extent(way: _Way, dark: Any, own: Any) -> tuple[int, int] | None:
 RADII = 1.0, 3.0
 """mm between which a circle's radius is that of a joint."""
 RAYS = np.exp(2j * np.pi * np.arange(72) / 72)
-RAY_STEP, INWARDS, OUTWARDS, BEYOND = 0.1, 0.6, 1.3, 2.0
-"""mm between places of a ray; from the record's radius to where its stroke may begin and may be darkest; and how far is looked."""
+INWARDS, OUTWARDS, BEYOND = 0.6, 1.3, 2.0
+"""mm from the record's radius to where its stroke may begin and may be darkest; and how far is looked."""
 ROOM = 5
 """Places and rays to which the ink of others spreads."""
 WITHIN, AFTER = 0.2, 0.3
@@ -262,13 +272,13 @@ def _edges(e: Element, ink: Any, owners: Owners, words: Any) -> tuple[float, com
     """How much too far out the outer edge of a joint is, and how far aside its middle, mm; None where too little of it is seen, or
     no circle.
     """
-    far = np.arange(0, e.radius + BEYOND, RAY_STEP)
+    far = np.arange(0, e.radius + BEYOND, STEP)
     places = e.centre + RAYS[:, None] * far
     others = owners.others(e.number, places) | (sample(words, pixels(places)) > 100)
     near = cv2.dilate(np.vstack((others[-ROOM:], others, others[:ROOM])).astype(np.uint8), np.ones((ROOM, ROOM), np.uint8)) > 0
     dark = sample(ink, pixels(places)).astype(np.float64)
     within = (far > e.radius - INWARDS) & (far < e.radius + OUTWARDS)
-    edge, half = np.array([_edge(ray, within) for ray in dark]) * RAY_STEP, line_type(e.style).width / 2
+    edge, half = np.array([_edge(ray, within) for ray in dark]) * STEP, line_type(e.style).width / 2
     moved_by = (far > edge[:, None] - half - WITHIN) & (far < edge[:, None] + AFTER)
     free = ~(near[ROOM:-ROOM] & moved_by).any(1)
     return _circle(edge[free] - e.radius - half, RAYS[free]) if free.sum() >= LEAST else None

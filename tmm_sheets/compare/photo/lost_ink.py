@@ -30,7 +30,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.box import Box
-from tmm_sheets.compare.elements import Element, sampled
+from tmm_sheets.compare.elements import SAMPLED, Element, sampled
 from tmm_sheets.compare.photo.profiles import ProfileLines, fit_freely, peaks, profiles
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Floats, Map
 from tmm_sheets.compare.photo.traces import NEARLY_ALL, InkTrace, expected_ink
@@ -272,9 +272,8 @@ FINE = 7.0
 """Pixels per mm from which on thin lines are two pixels wide: those that are whole all over the sheet are not eaten anywhere."""
 THIN = 0.3
 """mm; width of lines up to which they are eaten."""
-LONG, BROKEN, MANY = 15.0, 0.9, 0.02
-"""mm of a thin line, share of it with ink below which it is broken, and share of such lines that are: a pencil leaves gaps in one
-of a hundred."""
+LONG, MANY = 15.0, 0.02
+"""mm of a thin line, and share of such lines that are in pieces: a pencil leaves gaps in one of a hundred."""
 LARGE, NOTHING = 30.0, 0.1
 """mm of a thin line that is not eaten whole, and its least rest."""
 LETTERS = 3
@@ -300,7 +299,7 @@ def lost_to_threshold(grey: Any, traces: Sequence[InkTrace], scale: float) -> Lo
 
 def eats(traces: Sequence[InkTrace]) -> bool:
     """Whether thin lines are in pieces all over the sheet."""
-    thin = [t.covered < BROKEN for t in traces if t.status == "measured" and t.element.length > LONG and _thin(t)
+    thin = [t.covered < WHOLE for t in traces if t.status == "measured" and t.element.length > LONG and _thin(t)
             and expected_ink(t.element) == 1.0]  # fmt: skip
     return bool(thin) and float(np.mean(thin)) > MANY
 
@@ -337,8 +336,6 @@ def _thin(t: InkTrace) -> bool:
 
 ABOUT, STEEP = 7, 0.9
 """mm within which a shadow begins, and brightness of its dark side as a share of the other up to which its edge is steep."""
-STEP = 0.5
-"""mm between places of an end."""
 TAKEN = 0.3
 """Share of an element's place in such light from which on nothing is told of what is not seen of it."""
 APART = 50.0
@@ -375,8 +372,8 @@ def _with_ends_shown(t: InkTrace, uneven: Mask) -> InkTrace:
 
 def _rest(t: InkTrace, k: int) -> Points:
     """Places of a line that are not seen at its beginning or its end."""
-    line, by = sampled(t.element.points if k == 0 else t.element.points[::-1], STEP)[0], -t.ends[k]
-    return np.asarray(line[: max(round(by / STEP), 1)])
+    line, by = sampled(t.element.points if k == 0 else t.element.points[::-1])[0], -t.ends[k]
+    return np.asarray(line[: max(round(by / SAMPLED), 1)])
 
 
 def taken(before: Sequence[InkTrace], after: Sequence[InkTrace]) -> list[complex]:

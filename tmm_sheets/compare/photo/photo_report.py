@@ -17,19 +17,17 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built
+from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built, told_view
 from tmm_sheets.compare.elements import ElementView, dashed, drawn
 from tmm_sheets.compare.findings import (
     FindingRecord,
     Report,
-    as_tree,
     called,
-    counted,
     of_element,
     point,
+    reported,
     said_verdict,
     shifted,
-    table,
 )
 from tmm_sheets.compare.photo import overlay
 from tmm_sheets.compare.photo.finding_clusters import FindingCluster, may_be_either, places
@@ -39,7 +37,7 @@ from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.small_marks import Readings
 from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace
-from tmm_sheets.compare.story import Photo, Story, StoryPicture, StoryTable, ToldMistake, listed
+from tmm_sheets.compare.story import Photo, StoryPicture, StoryTable, ToldMistake
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import told
 from tmm_sheets.words import either, marked, tell, tell_n
@@ -122,21 +120,17 @@ def image_report(
     tolerance, head, rows = _tolerance(pencil, found.uncertainty, soft), tuple(map(tell, HEAD)), _rows(judged)
     unread = [_read(readings), tell(NUMBERS_READ)] if readings else [tell(NOT_READ)]
     told_mistakes = mistakes(found, judged.findings, judged.places, built)
-    hidden, extra_places = _hidden(judged), _extra(judged)
-    lines = [summary, *filter(None, ["; ".join((*hidden, *extra_places))]), tolerance, "", *listed(told_mistakes),
-             *([*table(head, rows), ""] if rows else []), *unread]
     records, start = _records(judged, built)
-    tree = as_tree(
-        "photo", name, n, records, start, _unclaimed(judged), image=path.name, pixels_per_mm=round(found.scale, 2),
-        matched=round(found.match, 3), tolerance=round(pencil + found.uncertainty + soft, 3), count=_count(judged),
-        notes=list(notes), bulging=boxes(found.bulging), **({"numbers_read": readings.tree} if readings else {}))
-    title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=n, file=path.name)
-    files = {f"compare_sheet_{n}.{suffix}": data for suffix, data in _overlays(found, judged, title).items()}
     verdicts = [str(p.verdict) for p in judged.places]
     tables = (StoryTable(tell("Everything that is off"), head, tuple(rows), tuple(verdicts)),) if rows else ()
-    story = Story(title, (summary, *extra_places, tolerance, *notes), told_mistakes,
-                  tables, (*hidden, *unread))
-    return Report("\n".join(lines), tree, files, notes, story, records, start)
+    report = reported(
+        "photo", name, n, path, (summary, *_extra(judged), tolerance), records, start, told_mistakes, tables,
+        (*_hidden(judged), *unread), notes, _unclaimed(judged), image=path.name, pixels_per_mm=round(found.scale, 2),
+        matched=round(found.match, 3), tolerance=round(pencil + found.uncertainty + soft, 3), count=_count(judged),
+        notes=list(notes), bulging=boxes(found.bulging), **({"numbers_read": readings.tree} if readings else {}))
+    assert report.story is not None
+    overlays = _overlays(found, judged, report.story.title).items()
+    return replace(report, files={f"compare_sheet_{n}.{suffix}": data for suffix, data in overlays})
 
 
 def boxes(places: Mask) -> list[list[int]]:
@@ -264,8 +258,6 @@ def _overlays(found: Rectified, judged: _Judged, title: str) -> dict[str, bytes]
         return {"png": drawn.result(), "pdf": page}
 
 
-SHOWN = 10
-"""Most findings of a view that are told in words beside its picture; the table has all."""
 ROUND = 4.0
 """Least radius of the circle round what is off, mm."""
 OTHERS = 4
@@ -292,15 +284,8 @@ def mistakes(found: Rectified, findings: Iterable[PhotoFinding], places: Iterabl
 
 def _mistake(found: Rectified, view: ElementView, places: Sequence[FindingCluster], exact: Sequence[Any],
              built: BuiltPlan | None) -> ToldMistake:
-    red = any(p.verdict == "red" for p in places)
-    details = [tell("no. {number}, {element}: {what}").format(
-        number=p.number, element=called(p.findings[0].element), what=said(p)) for p in places[:SHOWN]]
-    if len(places) > SHOWN:
-        details.append(tell("and {n} more, in the table").format(n=len(places) - SHOWN))
     # What is doubtful at a place that is wrong is no other place to look at.
-    what = counted([f for p in places for k, f in enumerate(p.findings) if f.verdict == "red" or k == 0])
-    if built is not None:
-        what, details = built.said(), [built.explained(), *details]
+    bad = [f for p in places for k, f in enumerate(p.findings) if f.verdict == "red" or k == 0]
     wrong = tuple(line for p in places for line in shown(p))
     if exact and Box.around(np.concatenate(exact)).width > WHOLE:
         here = Box.around(np.array([p.at for p in places]), ABOUT)
@@ -309,8 +294,8 @@ def _mistake(found: Rectified, view: ElementView, places: Sequence[FindingCluste
     picture = StoryPicture(tuple(exact), (), wrong, tuple((p.at, reach, str(p.number)) for p in places))
     box = picture.box
     seen = Photo(box, overlay.piece(found.ink, found.level, box, PIXELS / max(box.width, box.height)))
-    return ToldMistake(view.name, what, "red" if red else "amber", tuple(details), replace(picture, photo=seen),
-                   named=built is not None)
+    rows = [(p.number, p.findings[0].element, said(p)) for p in places]
+    return told_view(view, built, bad, rows, replace(picture, photo=seen))
 
 
 def said(p: FindingCluster) -> str:

@@ -237,7 +237,7 @@ MOVED, LEAST_MOVED = 15.0, 2.5
 LIKE, MORE = (0.55, 1.35), (-0.4, 0.8)
 """Its extent there as shares of that of its box, and mm that it may have beside: letters fill their boxes more or less."""
 WRITTEN = 0.06
-"""Least share of its box with ink, there as in its place."""
+"""Share of its place with ink from which on lettering counts as there, elsewhere too: a dash has 0.12."""
 EDGE = 0.5
 """mm about other lettering whose ink is its own."""
 APART, WORDS = 0.5, 0.8

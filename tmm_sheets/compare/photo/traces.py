@@ -106,6 +106,7 @@ class ExtraInk(NamedTuple):
 
 
 STEP = 0.1  # mm between offsets of a profile
+END_STEP = 0.2  # mm between places along a line at which its ends and its head are looked for
 LEAST = 6.0  # mm of line that can be measured
 SHRUNK = 0.5  # share of its radius by which a circle is never too small
 BLURRED = 7  # steps over which a line that crosses may be seen, beside its own width

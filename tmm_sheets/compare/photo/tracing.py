@@ -30,7 +30,7 @@ from tmm_sheets.compare.photo.lost_ink import Mask, at, in_pieces, share_hidden,
 from tmm_sheets.compare.photo.own_place import Strip, in_place, narrow_divergence, strips, uncovered
 from tmm_sheets.compare.photo.profiles import NO_GREY, SCALE, ink_levels, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
-from tmm_sheets.compare.photo.small_marks import displaced_dots
+from tmm_sheets.compare.photo.small_marks import WRITTEN, displaced_dots
 from tmm_sheets.compare.photo.traces import (
     ABOUT_INK,
     ELSEWHERE,
@@ -62,7 +62,6 @@ OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is no
 NEARLY, WASHED_OUT = 0.3, 12
 """Share of what is not seen that lies in hidden places or at their edge from which on it is hidden; mm about them where letters are
 washed out with the lines."""
-WRITTEN = 0.06  # share of its place with ink from which on lettering counts as there: a dash has 0.12
 PARTLY, CLEAR = 0.45, 0.9
 """Share of the columns of its place with ink below which part of lettering is missing, and least share of columns to be seen."""
 GAPPY = 0.65  # share of such columns below which it is looked whether lettering stands elsewhere

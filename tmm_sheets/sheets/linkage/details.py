@@ -28,8 +28,10 @@ from tmm_sheets.drawing.owners import AT, CLEARLY
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.numbers import number
 from tmm_sheets.remarks import Remark
+from tmm_sheets.sheets.border_solver import WITHOUT_DETAILS, BorderNode, FigureNode, Form
 from tmm_sheets.sheets.linkage import link_marks
 from tmm_sheets.sheets.player import PlayerStage, together
+from tmm_sheets.sheets.views import ViewPlace, function
 from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
@@ -77,6 +79,8 @@ class Dense:
     """Radii of the window, mm, the most welcome first."""
     away = -1 + 1j
     """Direction in which its name stands."""
+    within = 2 * ROUND
+    """Across this its letters are too many, mm."""
 
     def times(self, half: float) -> float:
         """How many times it can be enlarged in a window of a radius, mm; 0 where that is too small for it."""
@@ -93,6 +97,10 @@ class Dense:
         wide = [max(2 * (half + self.beside), letter(str(self.factor(half)), 5.0).width + 2.1) for half in halves]
         return [*((width, 2 * half + HEAD) for width, half in zip(wide[:2], halves, strict=False)),
                 *((2 * (half + self.beside), 2 * half + HEAD) for half in halves)]
+
+    def lettered(self, canvas: Canvas) -> int:
+        """At how many of its places letters are asked for."""
+        raise NotImplementedError
 
     def draw(self, project: Project, canvas: Canvas, middle: complex, half: float) -> float:
         """Draw it in a window and take from the view what stands there now; gives the radius of the circle round it, mm."""
@@ -111,6 +119,53 @@ def dense_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tup
     assert found is not None
     others = {frame.view for frame in _whole(canvas, _polygons(project))} - {found.part} if isinstance(found, Corner) else ()
     return found.centre, found.part, list(others)
+
+
+def with_room(project: Project, view: ViewPlace, node: BorderNode) -> BorderNode:
+    """The node of a view with room beside or under its figures for the details that they will need, found once for a project.
+
+    They are those of the view as it comes out in the box of its arrangement.
+    """
+    key = view.draw, view.options.get("group")
+    if key not in project.expected:
+        boxes, canvas = node.parts(view.box), Canvas()
+        canvas.begin(view.box, "", view.draw)
+        # On no sheet: what is told of a view by the scale factors of others would ask for the arrangement that is being made.
+        options = {**view.options, **({"places": boxes} if len(boxes) > 1 else {})}
+        function(view.draw)(project.on_sheets([]), canvas, view.box, options)
+        found = dict[int, list[list[tuple[float, float]]]]()
+        for place in _every(project, canvas):
+            n = next((n for n, box in enumerate(boxes) if box == canvas.parts[place.part].box), None)
+            if n is not None:
+                found.setdefault(n, []).append(place.sizes())
+        project.expected[key] = found
+    asked: dict[int, list[list[tuple[float, float]]]] = project.expected[key]
+    leaves = list(node.leaves())
+    for n, sizes in asked.items():
+        node = _beside(node, leaves[n], _forms(sizes))
+    return node
+
+
+CLEARANCE = 8.0
+"""What a detail needs round it, both sides together, mm."""
+
+
+def _forms(sizes: list[list[tuple[float, float]]]) -> list[Form]:
+    """Forms in which all details of a figure have room, beside it or under it; then those of the first alone."""
+    found = list[Form]()
+    for price, some in ((1.0, sizes), (WITHOUT_DETAILS / 2, sizes[:1]))[:len(sizes)]:
+        wide, high = zip(*(each[-2] for each in some), strict=True)
+        found += [Form(max(wide) + CLEARANCE, sum(high) + CLEARANCE, price, beside=True),
+                  Form(sum(wide) + CLEARANCE, max(high) + CLEARANCE, price * 1.01)]
+    return found
+
+
+def _beside(node: BorderNode, figure: BorderNode, forms: Sequence[Form]) -> BorderNode:
+    """A tree in which a figure has room for one of some forms."""
+    if node is figure:
+        return FigureNode(children=[figure], forms=forms, without=WITHOUT_DETAILS)
+    node.children = [_beside(child, figure, forms) for child in node.children]
+    return node
 
 
 def dense(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -137,13 +192,18 @@ def next_name(canvas: Canvas) -> str:
 def _nth(project: Project, canvas: Canvas, options: dict[str, Any]) -> Dense | None:
     """The dense place that the ``nth`` detail is of: those before it are drawn, or found no room."""
     drawn = sum(part.draw == VIEW and bool(part.title) for part in canvas.parts)
-    circles = _circles(canvas)
-    plans = _polygons(project) if canvas.frames else {}
-    whole = _whole(canvas, plans)
-    left = [place for place in (*_crowds(canvas, {frame.view for frame in whole}), *_corners(canvas, plans, whole))
-            if not any(abs(place.centre - at) < 1e-6 for at in circles)]
+    left = _every(project, canvas)
     n = int(options.get("nth", 1)) - 1 - drawn
     return left[n] if n < len(left) else None
+
+
+def _every(project: Project, canvas: Canvas) -> list[Dense]:
+    """All dense places of a sheet that are not shown enlarged yet."""
+    circles = [mark.centre for n in canvas.windows if isinstance(mark := canvas.marks[n], Arc)]
+    plans = _polygons(project) if canvas.frames else {}
+    whole = _whole(canvas, plans)
+    return [place for place in (*_crowds(canvas, {frame.view for frame in whole}), *_corners(canvas, plans, whole))
+            if not any(abs(place.centre - at) < 1e-6 for at in circles)]
 
 
 def _placed(canvas: Canvas, frame: PlacedFrame, centre: complex, middle: complex, times: float) -> int:
@@ -182,6 +242,7 @@ class Corner(Dense):
     filled = 0.6
     beside = 1.0
     away = 1 + 1j
+    within = WIDE
 
     @classmethod
     def of(cls, canvas: Canvas, plan: Plan, frame: PlacedFrame, k: int, vectors: tuple[Vector, ...], points: dict[str, complex],
@@ -253,20 +314,14 @@ class Corner(Dense):
 
 
 def unread(project: Project, n: int, canvas: Canvas) -> list[Remark]:
-    """Plans of sheet ``n`` with more letters within a few millimetres than find room, which no detail of all its views shows."""
-    plans = _polygons(project) if canvas.frames else {}
-    shown, found = _circles(canvas), dict[str, int]()
-    for it in _corners(canvas, plans, _whole(canvas, plans)):
-        if not any(abs(it.centre - at) < 1e-6 for at in shown) and (count := it.lettered(canvas)) >= SEVERAL:
+    """Views of sheet ``n`` with more letters in a small place than find room, which no detail of all its views shows."""
+    found = dict[str, tuple[int, float]]()
+    for it in _every(project, canvas):
+        if (count := it.lettered(canvas)) >= SEVERAL:
             title = "".join(run.text for run in letter(canvas.parts[it.part].title, 5.0).runs)
-            found[title] = max(count, found.get(title, 0))
+            found[title] = max((count, it.within), found.get(title, (0, 0.0)))
     said = marked("sheet {n}: {what}: {count} points with letters lie within {size:.0f} mm and there is no room to enlarge them")
-    return [Remark(said, {"n": n, "what": what, "count": count, "size": WIDE}) for what, count in found.items()]
-
-
-def _circles(canvas: Canvas) -> list[complex]:
-    """Middles of what is enlarged on a sheet, and of the details."""
-    return [mark.centre for n in canvas.windows if isinstance(mark := canvas.marks[n], Arc)]
+    return [Remark(said, {"n": n, "what": what, "count": count, "size": size}) for what, (count, size) in found.items()]
 
 
 def _no_more_zero(canvas: Canvas, it: Corner) -> None:
@@ -345,6 +400,10 @@ class Crowd(Dense):
     """Labels of a scheme that stand too close together, all of what is in the circle round them."""
 
     labels: tuple[Label, ...] = ()
+
+    def lettered(self, canvas: Canvas) -> int:
+        """At how many of its places letters are asked for."""
+        return len(self.labels)
 
     def draw(self, project: Project, canvas: Canvas, middle: complex, half: float) -> float:
         """What is inside the circle, with the letters that had been asked for there."""

@@ -208,6 +208,8 @@ AROUND = 12.0, 10.0, 12.0, 26.0
 """Room round the curve for numbers at the left, below, right and above (title and scale factor), mm."""
 SIZES = 120.0, 100.0, 80.0, 60.0
 """Lengths of the longer side of the curve that are tried, mm."""
+LOWEST = 25.0
+"""Least length of its shorter side, mm: the numbers of a flatter curve have no room beside each other."""
 
 
 def bearing_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
@@ -218,7 +220,8 @@ def bearing_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> 
     real = extent([course, np.zeros(1)])
     left, below, right, above = AROUND
     longest = max(real.width, real.height)
-    return [(max(size * real.width / longest + left + right, 80.0), size * real.height / longest + below + above) for size in SIZES]
+    return [(max(size * real.width / longest + left + right, 80.0), size * real.height / longest + below + above) for size in SIZES
+            if size * min(real.width, real.height) >= LOWEST * longest]
 
 
 def bearing(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

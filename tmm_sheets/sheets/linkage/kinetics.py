@@ -18,8 +18,9 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_layout import TOGETHER, wrapped
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, decimals_for, fixed, is_zero, number
+from tmm_sheets.sheets.border_solver import UNDER
 from tmm_sheets.sheets.components import flat_crossings, listed
-from tmm_sheets.sheets.linkage import link_marks, linkage_sizes
+from tmm_sheets.sheets.linkage import link_marks, linkage_sizes, moments
 from tmm_sheets.sheets.linkage.kinetic_frames import (
     AROUND,
     CRANK,
@@ -63,6 +64,7 @@ if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import StructuralGroup
     from tmm_sheets.methods.linkage.forces import Kinetostatics
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.linkage.moments import Equations
 
 ALONG, SAME = 0.05, 0.01
 """Sine of the angle at which two sides of a polygon lie along each other; distance at which they meet, mm."""
@@ -92,7 +94,9 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     plans = loaded_plans(project, g.kind.force_plans(g))
     view = ViewPlace("kinetics.group", box, options)
     left, *places = options.get("places") or linkage_sizes.group(project, view).parts(box)
-    _scheme(project, canvas, left, g, k)
+    forms = moments.of_group(project, g)
+    under = places.pop(0) if forms else None
+    _scheme(project, canvas, left, under, g, k)
     for line in jumps(project, g.links):
         canvas.note(left, line)
     if not plans:
@@ -113,8 +117,8 @@ def jumps(project: Project, links: Collection[str]) -> Iterator[str]:
                 label=project.cycle.labels[k], load=link_marks.indexed(load.name), before=before, after=after, here=here)
 
 
-def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int) -> None:
-    """Loaded scheme of a group: its links, all forces and couples on it, the arms of its moment equations."""
+def _scheme(project: Project, canvas: Canvas, box: Box, under: Box | None, g: StructuralGroup, k: int) -> None:
+    """Loaded scheme of a group: its links, all forces and couples on it, the arms of its equations, which stand ``under`` it."""
     pos = project.study.positions
     shown, couples = outer_forces(project, g, k)
     drawn = [shape for shape in link_marks.shapes(pos) if shape.link in g.links]
@@ -142,11 +146,22 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
         s.dot(point, 0.9, "main")
         s.letters(point, link_marks.indexed(point.name), gap=1.5)
     draw_forces(s, shown, share)
-    low = min((frame(z) + d).imag for z, d in zip(*around, strict=True)) - SCHEME[1]
-    _from_moments(project, canvas, box._replace(y0=max(box.y0, low)), g, k, frame.scale)
     for c in couples:
         _turning(s, frame(c.at), 10.0, -1 - 0.4j, c)
     _link_couples(project, s, drawn)
+    low = _taken(box, frame, around, SCHEME)
+    if not _equations(canvas, low, under, moments.of_group(project, g)):
+        _from_moments(project, canvas, low, g, k, frame.scale)
+
+
+def _taken(box: Box, frame: PlanFrame, around: tuple[list[complex], list[complex]], inset: tuple[float, ...]) -> Box:
+    """A place down to where a figure in it ends: its points with what reaches from them, and the clearance under them."""
+    return box._replace(y0=max(box.y0, min((frame(z) + d).imag for z, d in zip(*around, strict=True)) - inset[1]))
+
+
+def _equations(canvas: Canvas, box: Box, under: Box | None, forms: Iterable[Equations], of: str = "moments") -> bool:
+    """Equations that are read from a view, in their place ``under`` what of its ``box`` it takes; False for no room."""
+    return under is not None and moments.draw(canvas, under.moved(1j * (box.y0 - UNDER - under.y1)), forms, of)
 
 
 def _link_couples(project: Project, s: PlayerStage, drawn: Iterable[link_marks.Shape]) -> None:
@@ -375,11 +390,14 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     plans = loaded_plans(project, [c.link])
     view = ViewPlace("kinetics.crank", box, options)
     left, *places = options.get("places") or linkage_sizes.crank(project, view).parts(box)
+    forms = moments.of_crank(project)
+    under = places.pop(0) if forms else None
     centre, pins = pos.points[c.pivot], [pos.points[name] for name in link_marks.crank_pins(pos)]
     pivot, ends = complex(centre.at(k)), [complex(pin.at(k)) for pin in pins]
     shown = on_crank(project, k)
     away = clear(pivot, ends, shown)
-    frame = fit_frame(project, canvas, "scheme-crank", "μ_l", tr("m/mm"), *crank_scheme(project, k, shown), left.inset(*CRANK),
+    around = crank_scheme(project, k, shown)
+    frame = fit_frame(project, canvas, "scheme-crank", "μ_l", tr("m/mm"), *around, left.inset(*CRANK),
                       finest_crank(project))
     canvas.title(left, tr("Input link"), str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
@@ -399,15 +417,17 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         _turning(s, s.at(centre), 24.0, away, Couple(balancing_sign(project), 0j, float(moment.at(k)), moment))
     for line in jumps(project, [c.link]):
         canvas.note(left, line)
-    _crank_couples(project, s, left, s.at(centre), away)
+    said = _crank_couples(project, s, s.at(centre), away)
     if not plans:
         canvas.note(left, tr("There are no forces in this position"))
     for fp, place in zip(plans, places, strict=True):
         _force_plan(project, canvas, place, fp, k)
+    if not _equations(canvas, _taken(left, frame, around, CRANK), under, forms) and said:
+        _fitted(canvas, complex(left.centre.real, left.y0 + 3.0), "; ".join(said), 3.5, left.width - 4.0)
 
 
-def _crank_couples(project: Project, s: PlayerStage, box: Box, at: complex, away: complex) -> None:
-    """Couples on the crank, its inertia couple among them, as arrows and with their values."""
+def _crank_couples(project: Project, s: PlayerStage, at: complex, away: complex) -> list[str]:
+    """Couples on the crank, its inertia couple among them, as arrows; gives their values with that of the balancing moment."""
     k, forces = project.force_index, project.study.forces
     said = []
     for n, couple in couples_of(project, project.mechanism.crank.link):
@@ -420,15 +440,16 @@ def _crank_couples(project: Project, s: PlayerStage, box: Box, at: complex, away
     if said and project.driver is None and forces.balancing is not None:
         moment = number(float(project.study.balance["M"].at(k)), 5, forces.moment_size(k))
         said.append(tr("{quantity} = {value} N·m").format(quantity=balancing_sign(project), value=moment))
-    if said:
-        _fitted(s.canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(said), 3.5, box.width - 4.0)
+    return said
 
 
 def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Zhukovsky's lever: the velocity plan turned by 90 degrees with every force and its arm."""
     k, lv = project.force_index, project.study.lever
     shown = on_lever(project, k)
-    frame = fit_frame(project, canvas, "lever", "μ_V", tr("(m/s)/mm"), *lever_scheme(project, k, shown), box.inset(*LEVER))
+    box, *under = options.get("places") or linkage_sizes.lever(project, ViewPlace("kinetics.lever", box, options)).parts(box)
+    around = lever_scheme(project, k, shown)
+    frame = fit_frame(project, canvas, "lever", "μ_V", tr("(m/s)/mm"), *around, box.inset(*LEVER))
     plain: Scale | None = canvas.scales.get("velocities")
     text = str(frame.scale)
     ratio = plain.mu / frame.scale.mu if plain is not None else 1.0
@@ -450,13 +471,9 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         s.letters(lv.contact, lv.contact.name, gap=1.2)
     draw_arms(s, 0j, shown, points=[complex(s.at(step)) for step in lv.points.values()])
     draw_forces(s, shown)
-
-
-def lever_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[complex, int, list[int]]:
-    """Where the equation of the lever belongs: under its middle, mm; its part of the sheet, and no other that it could be of."""
-    part = max(k for k, part in enumerate(canvas.parts) if part.draw == "kinetics.lever")
-    box = canvas.parts[part].box
-    return complex(box.centre.real, box.y0), part, []
+    low = _taken(box, frame, around, LEVER)
+    if under and not _equations(canvas, low, under[0], moments.at_scale(project, frame.scale), "moments of the lever"):
+        canvas.note(box, tr("Equation of the lever: in the note"))
 
 
 def _turned_letters(s: PlayerStage, turned: PlayerStage, points: Mapping[str, Step], vectors: list[Segment]) -> None:

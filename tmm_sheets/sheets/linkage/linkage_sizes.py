@@ -10,22 +10,22 @@ from typing import TYPE_CHECKING
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY
 from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.sheets import border_solver
 from tmm_sheets.sheets.border_solver import CRANK, SHARE, VECTOR, BorderNode, Need, fixed, joined, leaf, reaching, rounded_up, rows
-from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
+from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames, moments
 from tmm_sheets.sheets.linkage import synthesis as triads_by_hand
 from tmm_sheets.sheets.player import extent
 from tmm_sheets.sheets.views import ViewPlace
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from tmm_sheets.mechanism.groups.contexts import ForcePlan
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.border_solver import Form
 
 MAIN = 4
 """How much more than others the position plans count: the mechanism is what a sheet is about."""
-
-
-LINKS = 0.4
-"""Size of links in that of their whole scheme, below which they are not what its scale factor is for."""
 
 
 OF_FORCE = 6.0
@@ -122,10 +122,17 @@ def group(project: Project, view: ViewPlace) -> BorderNode:
         return fixed(view.box)
     g = tuple(reversed(project.mechanism.groups))[nth - 1]
     box, share = view.box, float(view.options.get("scheme", 0.45))
-    need = _readable(reaching(box, *kinetic_frames.scheme(project, g, k), kinetic_frames.SCHEME, (92.0, 80.0)),
+    under = moments.room(project, moments.of_group, g)
+    reach = kinetic_frames.scheme(project, g, k)
+    need = _readable(reaching(_over(box, under), *reach, kinetic_frames.SCHEME, (92.0, 80.0)),
                      *kinetic_frames.crowd(project, g, k), OF_FORCE)
     plans = [_force_plan(project, fp, k) for fp in kinetic_frames.loaded_plans(project, g.kind.force_plans(g))]
-    return _parted(box, share, need, plans)
+    return _parted(box, share, need, plans, under)
+
+
+def _over(box: Box, under: Sequence[Form]) -> Box:
+    """What the equations ``under`` a figure leave of its box, half of it at least."""
+    return box._replace(y0=min(box.y0 + under[0].height, box.centre.imag)) if under else box
 
 
 def each_group(project: Project, view: ViewPlace) -> list[ViewPlace]:
@@ -144,7 +151,7 @@ def _readable(need: Need, size: float, forces: int, each: float) -> Need:
     Where only its width and height are measured, arrows round a small figure take the same place as round a large one. What
     is small beside its own forces and their arms, slider blocks in a slot, is no larger at any factor that has room for these.
     """
-    if not forces or not size > LINKS * max(need.span):
+    if not forces or not size > border_solver.LINKS * max(need.span):
         return need
     coarsest = size / (each * forces)
     power = 10.0 ** floor(log10(coarsest))
@@ -153,16 +160,18 @@ def _readable(need: Need, size: float, forces: int, each: float) -> Need:
     return replace(need, least=(wide, high))
 
 
-def _parted(box: Box, share: float, scheme: Need, plans: list[Need]) -> BorderNode:
-    if not plans:
-        return leaf(box, scheme)
-
+def _parted(box: Box, share: float, scheme: Need, plans: list[Need], under: Sequence[Form],
+            weight: float = 1.0) -> BorderNode:
+    """A figure with its equations ``under`` it and its plans beside it or under both, as costs least."""
     def node(axis: int, inner: int) -> BorderNode:
+        own = border_solver.over(leaf(box, scheme, share * weight), under)
+        if not plans:
+            return own
         each = (1.0 - share) / len(plans)
         of_plans = joined(inner, [leaf(box, need, each) for need in plans], [1.0] * len(plans), 4.0)
-        return joined(axis, [leaf(box, scheme, share), of_plans], [share, 1.0 - share], 4.0)
+        return joined(axis, [own, of_plans], [share, 1.0 - share], 4.0)
 
-    found = [node(axis, inner) for axis, inner in ((0, 1), (0, 0), (1, 0))[::2 if len(plans) == 1 else 1]]
+    found = [node(axis, inner) for axis, inner in ((0, 1), (0, 0), (1, 0))[::3 - min(len(plans), 2)]]
     for tree in found:
         for _ in range(2):
             tree.settle(box.width, box.height, (16.0, 8.0, 4.0))
@@ -185,9 +194,11 @@ def crank(project: Project, view: ViewPlace) -> BorderNode:
     k = project.force_index
     share = float(view.options.get("scheme", 0.5))
     reach = kinetic_frames.crank_scheme(project, k, kinetic_frames.on_crank(project, k))
-    scheme = replace(reaching(view.box, *reach, kinetic_frames.CRANK, (76.0, 80.0)), finest=kinetic_frames.finest_crank(project))
+    under = moments.room(project, moments.of_crank)
+    need = reaching(_over(view.box, under), *reach, kinetic_frames.CRANK, (76.0, 80.0))
+    scheme = replace(need, finest=kinetic_frames.finest_crank(project))
     plans = kinetic_frames.loaded_plans(project, [project.mechanism.crank.link])
-    return _parted(view.box, share, scheme, [_force_plan(project, fp, k) for fp in plans])
+    return _parted(view.box, share, scheme, [_force_plan(project, fp, k) for fp in plans], under)
 
 
 def lever(project: Project, view: ViewPlace) -> BorderNode:
@@ -195,9 +206,11 @@ def lever(project: Project, view: ViewPlace) -> BorderNode:
     k = project.force_index
     reach = kinetic_frames.lever_scheme(project, k, kinetic_frames.on_lever(project, k))
     # Every force and its arm hangs on it: no view has more labels.
-    need = reaching(view.box, *reach, kinetic_frames.LEVER, (112.0, 100.0))
+    under = moments.room(project, moments.of_lever)
+    need = reaching(_over(view.box, under), *reach, kinetic_frames.LEVER, (112.0, 100.0))
     points = extent([complex(step.at(k)) for step in project.study.lever.points.values()])
-    return leaf(view.box, _readable(need, max(points.width, points.height), len(kinetic_frames.on_lever(project, k)), ON_LEVER), 3)
+    need = _readable(need, max(points.width, points.height), len(kinetic_frames.on_lever(project, k)), ON_LEVER)
+    return _parted(view.box, 1.0, need, [], under, 3.0)
 
 
 def structure(project: Project, view: ViewPlace) -> BorderNode:
@@ -210,7 +223,7 @@ def motion_table(project: Project, view: ViewPlace) -> BorderNode | None:
     if not project.diagrams:
         return None
     count = len(project.cycle.labels) + (2 if view.options.get("links") else 1)
-    return rows(project, view, count, 9.0, (5.6 if count <= 26 else 4.0, 7.0), (100.0, 170.0))
+    return rows(project, view, count, 9.0, (5.6 if count <= 26 else 5.0, 7.0), (100.0, 170.0))
 
 
 def velocity_tables(project: Project, view: ViewPlace) -> BorderNode:
@@ -218,7 +231,7 @@ def velocity_tables(project: Project, view: ViewPlace) -> BorderNode:
     over = 2 if view.options.get("stacked") else 1
     count = over * (len(project.cycle.drawn) + 2)
     wide = 30.0 + kinematic_frames.COLUMN * kinematic_frames.columns(project) / over
-    return rows(project, view, count, 10.0 * over, (4.6, 7.5), (max(min(wide, 320.0), 0.8 * view.box.width), inf))
+    return rows(project, view, count, 10.0 * over, (5.0, 7.5), (max(min(wide, 320.0), 0.8 * view.box.width), inf))
 
 
 def results(project: Project, view: ViewPlace) -> BorderNode:
@@ -232,7 +245,7 @@ def values(project: Project, view: ViewPlace) -> BorderNode:
     loads = len(project.applied)
     count = 1 + ceil((points - len(project.mechanism.fixed)) / 2) + 1 + links + (1 + loads if loads else 0)
     tables = 3 if loads else 2
-    return rows(project, view, count, 8.0 * tables, (4.6, 7.0), (140.0, 200.0))
+    return rows(project, view, count, 8.0 * tables, (5.0, 7.0), (140.0, 200.0))
 
 
 def synthesis(project: Project, view: ViewPlace) -> BorderNode | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import reduce
 from itertools import product
 from math import inf
@@ -11,17 +11,21 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tmm_sheets.box import Box
 from tmm_sheets.construction.equation import Quantity, equation
 from tmm_sheets.construction.expression import Argument, Constant
 from tmm_sheets.construction.indices import pair_index
+from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, symbol
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.numbers import clean, is_zero
-from tmm_sheets.sheets.components.listed import Form, Formulas
+from tmm_sheets.sheets.border_solver import Form as Needed
+from tmm_sheets.sheets.components.listed import Form
 from tmm_sheets.sheets.linkage.kinetic_frames import arm_sign, balancing_sign, flat, normal_sign, on_lever
 from tmm_sheets.sheets.linkage.link_marks import indexed
-from tmm_sheets.words import marked, tr
+from tmm_sheets.sheets.player import extent
+from tmm_sheets.words import SHEETS, marked, on_paper, paper, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import StructuralGroup
@@ -30,8 +34,23 @@ if TYPE_CHECKING:
 BAR = "\u0305"
 SENSE = marked("(“+”: in the sense of ω_1)")
 """What is said of a balancing moment's sign."""
-WAYS = ((3.5, 7.0, inf), (3.5, 6.0, inf), *((3.5, 6.0, width) for width in (150.0, 120.0, 95.0, 80.0)), (2.5, 5.0, inf))
-"""Heights of the letters, distances of the lines and widths at which equations are broken that are tried, mm."""
+WIDTHS = (inf, 210.0, 165.0, 130.0, 105.0, 88.0)
+"""Widths at which equations are broken, mm."""
+LETTERS = ((3.5, 6.0, 1.0), (2.5, 4.5, 2.4))
+"""Heights of their letters, distances of their lines that are tried, mm, and what a figure over them counts for."""
+FEWER = 1.2
+"""The same of every text that says less."""
+
+
+class Equations(NamedTuple):
+    """Equations in a form that a place may have room for: their lines and letters, and what of a place they need."""
+
+    form: Form
+    needed: Needed
+
+    def fit(self, box: Box) -> bool:
+        """Whether they have room in a place."""
+        return self.needed.width <= box.width + 1e-6 and self.needed.height <= box.height + 1e-6
 
 
 class Term(NamedTuple):
@@ -42,49 +61,118 @@ class Term(NamedTuple):
     values: tuple[float, ...]
 
 
-def _forms(project: Project, canvas: Canvas, options: dict[str, Any]) -> Iterator[Form]:
-    """Each equation in one line, then broken, then in small letters; with those of the guides' reactions, if there are any.
-
-    Rather without these than in small letters.
-    """
-    every, usual = list(_lines(project, guides=True)), list(_lines(project))
-    guided = product([every], WAYS[:-1]) if len(every) > len(usual) else ()
-    for texts, (height, step, width) in (*guided, *product([usual] if usual else [], WAYS)):
-        yield Form([[line for text in texts for line in broken(text, width, height)]], height, step)
+def of_group(project: Project, g: StructuralGroup) -> list[Equations]:
+    """Equations of a group, with those of its guides' reactions if there is room; rather without these than in small letters."""
+    ways = (True, False) if g.guides else (False,)
+    return _once(project, g.name, lambda: [[*_of_group(project, g, guides)] for guides in ways])
 
 
-equations = Formulas(marked("Equations of moments"), "moments", _forms)
-"""Every equation of moments that gives a part of a reaction or the balancing moment: letters, then numbers."""
+def of_crank(project: Project) -> list[Equations]:
+    """The equation that gives the balancing moment."""
+    return _once(project, "crank", lambda: [[*_of_crank(project)]])
+
+
+def of_lever(project: Project) -> list[Equations]:
+    """The equation of the lever, rather in numbers alone than in small letters; its arms about as they will be."""
+    points = extent([complex(step.at(project.force_index)) for step in project.study.lever.points.values()])
+    about = Scale("μ_V", max(points.width, points.height) / USUAL or 1.0, "")
+    return _once(project, "lever", lambda: _lever_texts(project, about))
+
+
+def at_scale(project: Project, scale: Scale) -> Iterator[Equations]:
+    """The same at the scale factor of the lever."""
+    return _forms(_lever_texts(project, scale))
+
+
+def _lever_texts(project: Project, scale: Scale) -> list[list[str]]:
+    every = _lever_lines(project, scale)
+    return [every, every[1:]]
+
+
+USUAL = 110.0
+"""Size of a lever for whose arms room is reserved, mm: larger ones have a digit more."""
+
+
+TITLES = {"moments": marked("Equations of moments"), "moments of the lever": marked("Equation of the lever")}
+"""What the equations of a plan are called in the files."""
+
+
+def _once(project: Project, name: str, texts: Callable[[], list[list[str]]]) -> list[Equations]:
+    """The forms of some equations, found once for a project and language: every way to arrange a sheet asks for them."""
+    key = name, paper()
+    if key not in project.expected:
+        project.expected[key] = list(_forms(texts()))
+    found: list[Equations] = project.expected[key]
+    return found
+
+
+def room(project: Project, of: Callable[..., list[Equations]], *about: Any) -> list[Needed]:
+    """What equations need of a place in the language of most sheets: scale factors must not depend on words."""
+    of(project, *about)  # steps that are made for them speak the language of the paper
+    with on_paper(SHEETS):
+        return [one.needed for one in of(project, *about)]
+
+
+def _forms(texts: Sequence[list[str]]) -> Iterator[Equations]:
+    """Each equation in one line, then broken, then in small letters."""
+    last: list[str] | None = None
+    for (height, step, price), (n, lines), width in product(LETTERS, enumerate(texts), WIDTHS):
+        parts = [part for line in lines for part in broken(line, width, height)]
+        if parts and parts != last:
+            form, last = Form([parts], height, step, 0.0), parts
+            yield Equations(form, Needed(*form.size, price * FEWER ** n))
+
+
+def draw(canvas: Canvas, box: Box, forms: Iterable[Equations], of: str) -> bool:
+    """Write equations in a place under their view, in the first of the forms that it has room for; False for none."""
+    form = next((one.form for one in forms if one.fit(box)), None)
+    if form is None:
+        return False
+    canvas.begin(box, tr(TITLES[of]))
+    canvas.of = of
+    at = complex(box.centre.real - form.size[0] / 2 + 3.0, box.y1 - 0.8 * form.pitch)
+    canvas.lines(at, form.columns[0], form.pitch, form.height)
+    return True
 
 
 def _lines(project: Project, guides: bool = False) -> Iterator[str]:
-    """The equations, with those that give where the reactions of fixed ``guides`` act."""
-    k, forces, pos = project.force_index, project.study.forces, project.study.positions
+    """All equations, with those that give where the reactions of fixed ``guides`` act."""
     for g in reversed(project.mechanism.groups):  # as the reactions are found: the crank's neighbours last
-        for part in forces.from_moments:
-            if part.link in g.links:
-                total, centre, at = part.vector.args
-                sign, arm = f"F_{{{pair_index(part.link, part.source)}}}^τ", f"l_{{{part.at}{part.centre}}}"
-                length = float(forces.positions.plan.length(centre, at).at(k))
-                # The scheme of a class III group shows the arms about its special point: others say what they are about.
-                about = "" if g.kind.grade == 2 else f"^{part.centre}"
-                yield from _solved(project, indexed(part.centre), total, (sign, arm, length), part.vector, about)
-        if guides:
-            yield from _guided(project, g)
-        if (about := g.kind.about(g)) in pos.special:
-            point, third = pos.special[about].step, pos.special[about].third
-            if (normal := forces.about_special(point)) is not None:
-                sign = normal_sign(project, third)
-                length = abs(float(forces.arm_about(point, normal.args[2], normal).at(k)))
-                yield from _solved(project, f"{{{about}}}", normal.args[0], (sign, arm_sign(sign), length), normal)
+        yield from _of_group(project, g, guides)
+    yield from _of_crank(project)
+
+
+def _of_group(project: Project, g: StructuralGroup, guides: bool = False) -> Iterator[str]:
+    """Equations of moments that give parts of a group's reactions: letters, then numbers."""
+    k, forces, pos = project.force_index, project.study.forces, project.study.positions
+    for part in forces.from_moments:
+        if part.link in g.links:
+            total, centre, at = part.vector.args
+            sign, arm = f"F_{{{pair_index(part.link, part.source)}}}^τ", f"l_{{{part.at}{part.centre}}}"
+            length = float(forces.positions.plan.length(centre, at).at(k))
+            # The scheme of a class III group shows the arms about its special point: others say what they are about.
+            about = "" if g.kind.grade == 2 else f"^{part.centre}"
+            yield from _solved(project, indexed(part.centre), total, (sign, arm, length), part.vector, about)
+    if guides:
+        yield from _guided(project, g)
+    if (about := g.kind.about(g)) in pos.special:
+        point, third = pos.special[about].step, pos.special[about].third
+        if (normal := forces.about_special(point)) is not None:
+            sign = normal_sign(project, third)
+            length = abs(float(forces.arm_about(point, normal.args[2], normal).at(k)))
+            yield from _solved(project, f"{{{about}}}", normal.args[0], (sign, arm_sign(sign), length), normal)
+
+
+def _of_crank(project: Project) -> Iterator[str]:
+    """The equation of the balancing moment."""
+    k, forces, crank = project.force_index, project.study.forces, project.mechanism.crank
     if project.driver is None and forces.balancing is not None:
         total = forces.balancing.args[0]
         terms = list(_terms(project, total)) if np.isfinite(total.at(k)) else []
         if terms:
             # Taken to act in the sense of rotation: where it comes out negative it acts against it.
-            name, sense = balancing_sign(project), float(pos.mechanism.crank.sense)
-            centre = indexed(pos.mechanism.crank.pivot)
-            yield tr("ΣM_{centre} = {sum} = 0").format(centre=centre, sum=_sum([Term(name, sense, ()), *terms]))
+            name, sense = balancing_sign(project), float(crank.sense)
+            yield tr("ΣM_{centre} = {sum} = 0").format(centre=indexed(crank.pivot), sum=_sum([Term(name, sense, ()), *terms]))
             solved = [term._replace(sign=-sense * term.sign) for term in terms]
             said = _worked_out(solved, Quantity(name, float(project.study.balance["M"].at(k)), "N*m"))
             yield f"{said} {tr(SENSE)}"
@@ -136,23 +224,9 @@ def _solved(project: Project, centre: str, total: Step, own: tuple[str, str, flo
     yield _worked_out(terms, Quantity(sign, abs(complex(found.at(k))), "N"), lambda total, arm: abs(total) / arm, length)
 
 
-def _forms_of_lever(project: Project, canvas: Canvas, options: dict[str, Any]) -> Iterator[Form]:
-    """The equation of the lever in two heights of letters, broken at several widths; none without the lever on the sheet."""
-    for (height, step), width in product(((3.5, 6.0), (2.5, 5.0)), (250.0, 190.0, 140.0, 110.0, 90.0)):
-        if "lever" in canvas.scales and (lines := _lever_lines(project, canvas, width - 6.0, height, options)):
-            yield Form([lines], height, step, 10.0)
-
-
-lever = Formulas(marked("Equation of the lever"), "moments of the lever", _forms_of_lever)
-"""Sum of the moments about the pole of Zhukovsky's lever: letters, then numbers; arms in mm as they are drawn."""
-
-
-def _lever_lines(project: Project, canvas: Canvas, width: float, height: float, options: dict[str, Any]) -> list[str]:
-    """Lines of the equation of the lever, broken before a sign where they would be wider than ``width``, mm.
-
-    ``letters`` = false gives them in numbers alone.
-    """
-    k, study, mm = project.force_index, project.study, canvas.scales["lever"].mm
+def _lever_lines(project: Project, scale: Scale) -> list[str]:
+    """Sum of the moments about the pole of Zhukovsky's lever: letters, then numbers; arms in mm as they are drawn."""
+    k, study, mm = project.force_index, project.study, scale.mm
     least, own = study.forces.force_size(k) * project.mechanism.crank.speed, study.lever.hung[-1]
     by_moment = project.driver is None
     terms = []
@@ -173,14 +247,13 @@ def _lever_lines(project: Project, canvas: Canvas, width: float, height: float, 
     own_term = Term(f"{sign}·h_{{{name}}}", turning, ())
     solved = [term._replace(sign=-turning * term.sign) for term in terms]
     result = Quantity(sign, clean(value, study.forces.force_size(k)), "N")
-    said = [_worked_out(solved, result, lambda total, last: total / last, float(mm(abs(arm))))]
-    if options.get("letters", True):
-        said.insert(0, tr("ΣM_p = {sum} = 0").format(sum=_sum([own_term, *terms])))
+    said = [tr("ΣM_p = {sum} = 0").format(sum=_sum([own_term, *terms])),
+            _worked_out(solved, result, lambda total, last: total / last, float(mm(abs(arm))))]
     if by_moment:
         m = project.mechanism.crank
         found = Quantity(balancing_sign(project), clean(moment, study.forces.moment_size(k)), "N*m")
         said.append(f"{equation(mul, (result, Quantity(f'l_{{{m.pivot}{m.pin}}}', m.length)), found)} {tr(SENSE)}")
-    return [line for text in said for line in broken(text, width, height)]
+    return said
 
 
 def _terms(project: Project, total: Step, about: str = "") -> Iterator[Term]:
