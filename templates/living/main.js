@@ -51,7 +51,7 @@ function onKey(event) {
     : { " ": () => (film.playing ? pause() : play()), ArrowRight: () => stepTo(film.at + 1), ArrowLeft: () => stepTo(film.at - 1, true),
       Home: () => stepTo(-1, true), End: () => stepTo(film.stops.length - 1, true), "+": () => leaf.zoom.by(4 / 3), "=": () => leaf.zoom.by(4 / 3), "-": () => leaf.zoom.by(0.75),
       0: () => fit(), Escape: () => unask() };
-  acts["?"] = () => $("panel").replaceChildren(node("h2", {}, say("keys")), node("p", { class: "hint", style: "white-space: pre-line" }, say("list of keys")));
+  acts["?"] = () => $($("panel").hidden ? "told" : "panel").replaceChildren(node("h2", {}, say("keys")), node("p", { class: "hint", style: "white-space: pre-line" }, say("list of keys")));
   if (event.target.matches("button") && [" ", "Enter"].includes(event.key)) return;
   if (event.target.matches("input[type=range]") && event.key.startsWith("Arrow")) return;
   if (acts[event.key]) { event.preventDefault(); acts[event.key](); }

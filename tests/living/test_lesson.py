@@ -68,6 +68,8 @@ def test_the_address_tells_the_moment(tmp_path):
         page.now("location.hash = '#plan=velocities&step=3&phi=100&crank.length=0.082'")
         page.until("lesson.told.plan === 'velocities'")
         assert page.now("[lesson.at, machine.given['crank.length'], Math.round(machine.phi * 180 / Math.PI)]") == [2, 0.082, 100]
+        page.now("document.body.dispatchEvent(new KeyboardEvent('keydown', { key: '?', bubbles: true }))")
+        assert page.now("$('told').checkVisibility() && $('told').textContent.includes('G: ')")  # the list of keys, in sight
         assert page.said == []
 
 

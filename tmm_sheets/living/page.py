@@ -203,7 +203,8 @@ def page_words() -> dict[str, str]:
         "keys": tr("Keys"),
         "lengths": tr("Lengths"),
         "list of keys": tr("Space: play or pause\n← →: a step, or a degree\nHome, End: beginning, end\n"
-                           "+ −: zoom, 0: the whole sheet\nEsc: leave a step\nCtrl+Z: undo"),
+                           "+ −: zoom, 0: the whole sheet\nEsc: leave a step\nCtrl+Z: undo\n"
+                           "In a lesson: G: guess, F: lecture, B: dark"),
         "loads": tr("Loads"),
         "made of": tr("Made of"),
         "masses": tr("Masses and moments of inertia"),

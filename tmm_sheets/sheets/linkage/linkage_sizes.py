@@ -12,7 +12,7 @@ from tmm_sheets.construction.scale import HANDY
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.sheets import border_solver
 from tmm_sheets.sheets.border_solver import CRANK, SHARE, VECTOR, BorderNode, Need, fixed, joined, leaf, reaching, rounded_up, rows
-from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames, moments
+from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames, link_marks, moments
 from tmm_sheets.sheets.linkage import synthesis as triads_by_hand
 from tmm_sheets.sheets.player import extent
 from tmm_sheets.sheets.views import ViewPlace
@@ -219,11 +219,14 @@ def structure(project: Project, view: ViewPlace) -> BorderNode:
 
 
 def motion_table(project: Project, view: ViewPlace) -> BorderNode | None:
-    """A row for each position."""
+    """A row for each position, columns that their numbers fit in."""
     if not project.diagrams:
         return None
+    bars = [shape.link for shape in link_marks.shapes(project.study.positions)[1:] if shape.bar and view.options.get("links")]
+    columns = 1 + 3 * len({*(view.options.get("of") or project.diagrams), *bars})
     count = len(project.cycle.labels) + (2 if view.options.get("links") else 1)
-    return rows(project, view, count, 9.0, (5.6 if count <= 26 else 5.0, 7.0), (100.0, 170.0))
+    return rows(project, view, count, 9.0, (5.6 if count <= 26 else 5.0, 7.0),
+                (max(100.0, kinematic_frames.COLUMN * columns), 170.0))
 
 
 def velocity_tables(project: Project, view: ViewPlace) -> BorderNode:
