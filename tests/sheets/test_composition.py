@@ -12,10 +12,23 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY, handy
 from tmm_sheets.drawing.marks import Arc, Text
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.border_solver import SHOWN, BorderNode, Need, cut, joined, reaching, rounded_up, solve
+from tmm_sheets.sheets.border_solver import (
+    SHOWN,
+    BorderNode,
+    FigureNode,
+    Form,
+    Need,
+    cut,
+    joined,
+    reaching,
+    rounded_down,
+    rounded_up,
+    solve,
+)
+from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.composing import INSIDE
 from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
-from tmm_sheets.sheets.linkage import friction, kinematic_frames, kinetic_frames, link_marks
+from tmm_sheets.sheets.linkage import diagrams, friction, kinematic_frames, kinetic_frames, link_marks
 from tmm_sheets.sheets.linkage.linkage_sizes import OF_FORCE
 from tmm_sheets.sheets.player import fit_frame
 from tmm_sheets.sheets.sheet import composed
@@ -34,9 +47,14 @@ def drawn(need, box):
     return [s / mu + a for s, a in zip(need.span, need.around, strict=True)]
 
 
-@pytest.mark.parametrize("least", [0.00101, 0.0999, 1.0, 1.5000000001, 7.99, 8.01, 123.0])
-def test_the_quick_series_is_the_series(least):
-    assert rounded_up(least) == pytest.approx(handy(least), rel=1e-12)
+@pytest.mark.parametrize("power", [-50, -16, 0, 15, 50])
+@pytest.mark.parametrize("least", [1.01, 0.0999, 1.0, 1.5000000001, 7.99, 8.01, 123.0])
+def test_the_quick_series_is_the_series(least, power):
+    mu = least * 10.0 ** power
+    assert rounded_up(mu) == pytest.approx(handy(mu), rel=1e-12)
+    assert rounded_down(mu) <= mu * (1 + 1e-9)
+    assert rounded_up(rounded_down(mu)) == rounded_down(mu)
+    assert mu < 1.5 * rounded_down(mu)
 
 
 def test_no_two_factors_are_far_apart():
@@ -104,6 +122,41 @@ def test_pairs_with_friction_stand_where_their_journals_are_largest(count, colum
     """In a place about as high as wide; where none fits the least room is said."""
     assert friction.grid(count, 400.0, 418.0)[0] == columns
     assert friction.grid(count, 40.0, 60.0) == (1, friction.LEAST)
+
+
+FIGURE = Need((2.0, 1.0), (10.0, 10.0), least=(40.0, 30.0))
+WIDE, LOW, NARROW = Form(300.0, 20.0), Form(100.0, 20.0), Form(50.0, 40.0, 1.2)
+
+
+@pytest.mark.parametrize(("forms", "room", "under"), [
+    ((), (200.0, 150.0), 0.0),
+    ((LOW,), (200.0, 150.0), 20.0),
+    ((WIDE,), (200.0, 150.0), 0.0),  # wider than the place
+    ((WIDE, LOW), (200.0, 150.0), 20.0),
+    ((LOW, NARROW), (200.0, 150.0), 20.0),  # both have room: the cheaper
+    ((LOW, NARROW), (60.0, 150.0), 40.0),
+    ((LOW,), (100.0, 150.0), 0.0),  # no wider than the place is too narrow, one more is room
+    ((LOW,), (101.0, 150.0), 20.0),
+    ((LOW,), (200.0, 40.0), 0.0),  # the figure would be smaller than it is read
+    ((LOW,), (30.0, 20.0), 0.0),  # it is, all the same
+])
+def test_what_is_read_with_a_figure_takes_room_under_it(forms, room, under):
+    """In the form that makes the figure cost least; left out where none leaves the figure the size at which it is read."""
+    whole, text = leaves(FIGURE, Need(least=(0.0, 0.0)))
+    node, place = FigureNode(children=[whole, text], forms=forms), Box(0.0, 0.0, *room)
+    figure, below = node.places(place)[0], node.places(place)[1]
+    assert figure.y0 - below.y1 >= 3.0
+    assert (below.height >= under) if under else (below.height < 3.0)
+    left_out = FigureNode(children=leaves(FIGURE, Need(least=(0.0, 0.0))))
+    assert (node.cost(*room) < left_out.cost(*room)) is bool(under)
+
+
+@pytest.mark.parametrize(("width", "beside"), [(200.0, True), (90.0, False), (56.0, False)])
+def test_what_stands_beside_a_figure_takes_width_alone(width, beside):
+    node = FigureNode(children=leaves(FIGURE), forms=(Form(55.0, 100.0, beside=True),), without=5.0)
+    figure = node.places(Box(0.0, 0.0, width, 150.0))[0]
+    assert figure.height == 150.0
+    assert figure.width == (width - 56.0 if beside else width)
 
 
 def test_one_view_has_the_whole_room():
@@ -224,6 +277,13 @@ def test_what_a_group_of_class_three_drives():
     for (links, legs), driven in zip(alone.items(), ("5", "D"), strict=True):
         project.__dict__["mechanism"] = replace(project.mechanism, groups=(replace(triad, links=links, legs=legs),))
         assert project.diagrams == (driven,)
+
+
+@pytest.mark.parametrize("name", ["sixbar/7:2", "sixbar/8:3"])  # of thirteen columns and of seven
+def test_a_table_of_motion_has_room_for_its_numbers(name):
+    project = Project(catalogue.read(name))
+    view = next(view for view in arranged(project, 1).views if view.draw == "diagrams.motion_table")
+    assert sum(listed.needs(diagrams.motion_table.of(project, view.options)[1], 2.5)) <= view.box.width
 
 
 def test_the_same_project_has_the_same_places():

@@ -48,7 +48,8 @@ ROUNDS = 3
 """How often all borders are tried with each of these."""
 TOO_SMALL, BELOW = 1e8, 1e7
 """Price of a place that is too small by its own size, mm^2: more than that of any sheet; and of what is not seen at all in it."""
-_SERIES = [factor * 10.0 ** power for power in range(-15, 16) for factor in HANDY]
+_SERIES = [factor * 10.0 ** power for power in range(-99, 100) for factor in HANDY]
+"""Given numbers are 1e-12 to 1e12 in SI units, a force of inertia m omega^2 r is of four of them."""
 
 
 def rounded_up(mu: float) -> float:

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.project import Project
 
-FORM = "7"
+FORM = "8"
 """Number of the form in which arrangements are kept, another one for every change of it."""
 TITLE_BLOCK = Box(648.0, 8.0, 832.0, 61.0)
 """Place of the title block among the views."""

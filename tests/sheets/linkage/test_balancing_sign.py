@@ -1,11 +1,16 @@
 """The balancing force of a gear has its sign on the sheet: where it holds the wheel back that is said."""
 
+from itertools import pairwise
+
 import pytest
 
 from tests import project_files as files
+from tmm_sheets import catalogue
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.marks import Box, Text
+from tmm_sheets.project import Project
 from tmm_sheets.sheets.linkage import kinetics
+from tmm_sheets.sheets.sheet import composed
 
 
 @pytest.mark.parametrize(("position", "value", "held"), [("2", "7744,9", False), ("6", "−40,0", True), ("9", "−3843,3", True)])
@@ -16,3 +21,13 @@ def test_a_gear_force_that_holds_back_is_negative(position, value, held):
     said = {group.text for group in canvas.groups}
     assert sum(text.startswith(value[:-2]) for text in said) == 1
     assert any("удерживается" in note.text for note in canvas.notes) is held
+
+
+@pytest.mark.parametrize(("name", "n", "told"), [
+    ("sixbar/8:3", 1, "Mур = −328,11 Н·м"), ("tests/projects/boom.toml", 2, "Mи1 = 0,23645 Н·м")])
+def test_values_stand_under_the_crank_where_its_equation_has_no_room(name, n, told):
+    """In the view of the crank, not of its force plan; a crank that a cylinder drives has no equation of its own."""
+    sheet = composed(Project(catalogue.read(name)), n)
+    assert sheet.leaving == ()
+    own = [sheet.drawing.marks[a.first:b.first] for a, b in pairwise(sheet.parts) if a.title == "Начальное звено"]
+    assert [told in "".join(mark.text for mark in marks if isinstance(mark, Text)) for marks in own] == [True]

@@ -188,5 +188,16 @@ def test_what_is_dense_and_in_no_detail_is_told(points, lettered, told, enlarged
     assert found == ([] if enlarged else told)
 
 
+@pytest.mark.parametrize(("anchors", "told"), [([], []), (row(5), []), (row(6), [6]), ([0.0] * 9, []), (row(9, 30.0), [])],
+                         ids=["none", "few", "many", "coincident", "apart"])
+def test_a_crowd_of_letters_in_no_detail_is_told(anchors, told):
+    canvas = lever(*anchors)
+    assert [remark.values["count"] for remark in details.unread(None, 1, canvas)] == told
+    if told:
+        canvas.begin(PLACE, "", details.VIEW)
+        details.dense(None, canvas, PLACE, {})
+        assert details.unread(None, 1, canvas) == []
+
+
 def test_nothing_dense_on_a_sheet_without_plans():
     assert details.unread(None, 1, Canvas()) == []

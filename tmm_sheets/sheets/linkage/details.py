@@ -403,7 +403,7 @@ class Crowd(Dense):
 
     def lettered(self, canvas: Canvas) -> int:
         """At how many of its places letters are asked for."""
-        return len(self.labels)
+        return len(together([label.anchor for label in self.labels], 0.5))
 
     def draw(self, project: Project, canvas: Canvas, middle: complex, half: float) -> float:
         """What is inside the circle, with the letters that had been asked for there."""

@@ -420,10 +420,11 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     said = _crank_couples(project, s, s.at(centre), away)
     if not plans:
         canvas.note(left, tr("There are no forces in this position"))
+    low = _taken(left, frame, around, CRANK)
+    if not _equations(canvas, low, under, forms) and said:
+        _fitted(canvas, complex(low.centre.real, low.y0), "; ".join(said), 3.5, low.width - 4.0)
     for fp, place in zip(plans, places, strict=True):
         _force_plan(project, canvas, place, fp, k)
-    if not _equations(canvas, _taken(left, frame, around, CRANK), under, forms) and said:
-        _fitted(canvas, complex(left.centre.real, left.y0 + 3.0), "; ".join(said), 3.5, left.width - 4.0)
 
 
 def _crank_couples(project: Project, s: PlayerStage, at: complex, away: complex) -> list[str]:
@@ -437,8 +438,8 @@ def _crank_couples(project: Project, s: PlayerStage, at: complex, away: complex)
         else:
             _turning(s, s.at(hinge), 6.0, -away if s.at(hinge) == at else away, couple)
         said.append(tr("{quantity} = {value} N·m").format(quantity=couple.symbol, value=number(abs(couple.value), 5)))
-    if said and project.driver is None and forces.balancing is not None:
-        moment = number(float(project.study.balance["M"].at(k)), 5, forces.moment_size(k))
+    if project.driver is None and forces.balancing is not None and np.isfinite(value := float(project.study.balance["M"].at(k))):
+        moment = number(value, 5, forces.moment_size(k))
         said.append(tr("{quantity} = {value} N·m").format(quantity=balancing_sign(project), value=moment))
     return said
 
