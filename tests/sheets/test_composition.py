@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests import project_files as files
-from tmm_sheets import catalogue
+from tmm_sheets import catalogue, kept
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY, handy
 from tmm_sheets.drawing.marks import Arc, Text
@@ -286,9 +286,12 @@ def test_a_table_of_motion_has_room_for_its_numbers(name):
     assert sum(listed.needs(diagrams.motion_table.of(project, view.options)[1], 2.5)) <= view.box.width
 
 
-def test_the_same_project_has_the_same_places():
+def test_the_same_project_has_the_same_places(tmp_path, monkeypatch):
+    """Found, and read where the first one kept it."""
+    monkeypatch.setenv(kept.FOLDER, str(tmp_path))
     one, other = (arranged(Project(catalogue.read("lugansk/shaper")), 1).views for _ in range(2))
     assert one == other
+    assert list(tmp_path.iterdir())
 
 
 def test_a_view_left_out_gives_its_room_to_its_neighbours():

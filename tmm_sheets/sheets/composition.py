@@ -92,6 +92,7 @@ def _arranged(project: Project, n: int) -> Arrangement:
     if not found:
         return as_written
     taken = min(found, key=lambda solved: round(solved[0], 3))[1]
+    taken = replace(taken, views=tuple(replace(view, others={}) for view in taken.views))  # as what is kept of it
     before.keep(json.dumps([[view.draw, view.box, view.options] for view in taken.views]).encode())
     return taken
 
