@@ -19,8 +19,8 @@ LARGEST = 10_000_000
 """Bytes of the largest table that is read."""
 UNPACKED, COLUMNS, ROWS = 100_000_000, 100, 20_000
 """Bytes of what a workbook has packed, columns and rows that are read of one, at most."""
-_COMPUTED = re.compile(r"\s*[=+@＝＋＠－\t\r-]")
-"""How a text begins that a program would compute."""
+_COMPUTED = re.compile(r"\s*([=@＝＋＠－\t\r]|[+-](?!$))")
+"""How a text begins that a program would compute; a sign alone is none."""
 
 
 def text_of(path: Path, hint: str) -> str:

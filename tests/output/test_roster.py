@@ -142,7 +142,7 @@ def test_namesakes_and_names_that_windows_keeps(tmp_path):
 
 def test_a_spreadsheet_computes_nothing_of_what_is_written():
     """DDE, sums and numbers of names: an apostrophe makes them texts; dashes and words stay."""
-    cells = ["=cmd|' /C calc'!A0", "+1", "@SUM(1)", "-2", " =1", "\t=1", "＝1", "–", "ТМ-21", "A+1"]
+    cells = ["=cmd|' /C calc'!A0", "+1", "@SUM(1)", "-2", " =1", "\t=1", "＝1", "–", "+", "-", "", "ТМ-21", "A+1"]
     (row,) = csv.reader(csv_tables.written([cells]).decode("utf-8-sig").splitlines(), delimiter=";")
     assert row == [*(f"'{cell}" for cell in cells[:7]), *cells[7:]]
 
