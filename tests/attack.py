@@ -33,7 +33,7 @@ from tests.test_odd_input import places
 from tmm_sheets import catalogue, protocols, resources, results, summary
 from tmm_sheets.__main__ import run
 from tmm_sheets.backends import dxf, png, svg
-from tmm_sheets.compare import marking, view_places
+from tmm_sheets.compare import group, placing
 from tmm_sheets.compare.cad import cad_file
 from tmm_sheets.compare.measured import measured_file
 from tmm_sheets.compare.measured.collecting import measurables
@@ -323,8 +323,8 @@ DOORS = {
     "families": family,
     "settings": lambda rng: (put("settings", "tmm-sheets.toml", rng), commanded("show", CAM))[1],
     "plotters": lambda rng: plotters.plotter(str(put("plotter", f"x{rng.random()}.toml", rng))),
-    "marks": lambda rng: marking.read(put("marks", "m.toml", rng)),
-    "views": lambda rng: messages.read(view_places.ViewsTable, put("views", "v.toml", rng)),
+    "marks": lambda rng: group.read_scheme(put("marks", "m.toml", rng)),
+    "views": lambda rng: messages.read(placing.ViewsTable, put("views", "v.toml", rng)),
     "CSV": lambda rng: measured_file.read(put("measured", "m.csv", rng), cam(), measured()),
     "DXF": lambda rng: cad_file.read(put("dxf", "x.dxf", rng)),
     "images": lambda rng: photograph.read(put("image", "x.png", rng, cut)),

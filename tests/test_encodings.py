@@ -12,7 +12,7 @@ import pytest
 from tests.few import few
 from tmm_sheets import catalogue, encodings, resources
 from tmm_sheets.__main__ import run
-from tmm_sheets.compare import view_places
+from tmm_sheets.compare import placing
 from tmm_sheets.drawing import plotters
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import variant
@@ -173,4 +173,4 @@ def test_every_file_a_user_writes(encoding, tmp_path, capsys):
     views = tmp_path / "views.toml"
     views.write_bytes('[[view]]\nname = "План"\nours = [[0, 0], [9, 0]]\ntheirs = [[0, 0], [9, 0]]\n'.encode(encoding))
     with pytest.raises(BadInput, match='no view "План"'):
-        view_places.read(views, ())
+        placing.read_places(views, ())

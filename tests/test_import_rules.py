@@ -59,10 +59,10 @@ RULES = {
     "page": ("backends catalogue compare drawing living output project sheets task", ""),
     "note": ("backends construction drawing project record results sheets task.synthesis_refs task.units", "task"),
     "compare": ("drawing sheets", "construction project"),
-    "compare.marking": ("task.messages task.schema", ""),
-    "compare.view_places": ("compare task.messages task.schema", ""),
+    "compare.placing": ("compare drawing task.messages task.schema", ""),
+    "compare.overlays": ("backends compare drawing", ""),
     "compare.report_pages": ("backends compare drawing", ""),
-    "compare.group": ("compare output.build_store task.title_entries", "project"),
+    "compare.group": ("compare output.build_store task.messages task.schema task.title_entries", "project"),
     "compare.diagnosis": ("compare construction drawing", "project"),
     "compare.diagnosis.hypotheses": ("compare.codes compare.diagnosis construction methods.linkage", ""),
     "compare.measured": (f"catalogue compare construction drawing sheets {METHODS}", "project"),
@@ -81,11 +81,11 @@ RULES = {
 """What each room may import besides itself and the neutral modules; a row holds for all below it that has none of its own."""
 
 LIBRARIES = {
-    "ezdxf": "backends.dxf backends.dxf_frame_making compare.cad.cad_file compare.cad.cad_overlay",
+    "ezdxf": "backends.dxf backends.dxf_frame_making compare.cad.cad_file compare.overlays",
     "reportlab": "backends.pdf compare.report_pages",
     "matplotlib": "backends.png lab.bench.records optimising.picture",
     "pydantic": "task.values task.schema task.messages task.variant task.title_entries task.keys "
-                "task.family_folder task.family_tables compare.marking compare.view_places",
+                "task.family_folder task.family_tables compare.group compare.placing",
     "pydantic_core": "task.messages task.keys task.schema", "cv2": "compare.photo", "pypdfium2": "compare.photo",
     "shapely": "drawing sheets methods lab.bench compare",
     "typst": "note.typst_writer", "docx": "note.docx_writer",

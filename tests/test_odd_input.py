@@ -10,7 +10,7 @@ from tests.few import few
 from tests.project_files import from_file, toml
 from tmm_sheets import catalogue, toml_file
 from tmm_sheets.__main__ import run
-from tmm_sheets.compare import group, marking, view_places
+from tmm_sheets.compare import group, placing
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import family_tables, title_entries, variant
 
@@ -67,7 +67,7 @@ def test_a_number_of_hundreds_of_digits(door, number, tmp_path):
     path = tmp_path / "big.toml"
     path.write_text(f"[project]\nschema = {number}\n", encoding="utf-8")
     doors = {"project": lambda: variant.read(path), "settings": lambda: title_entries.of_file(path),
-             "marks": lambda: marking.read(path), "views": lambda: view_places.read(path, ()),
+             "marks": lambda: group.read_scheme(path), "views": lambda: placing.read_places(path, ()),
              "table": lambda: family_tables.read(path, ""),
              "group": lambda: group.compare(tmp_path, "press", None, None, None, None)}
     if door == "group":

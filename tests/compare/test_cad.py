@@ -17,7 +17,7 @@ from tests.compare.form import faults, of_elements
 from tests.few import seldom
 from tmm_sheets.backends import dxf
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare import view_places
+from tmm_sheets.compare import placing
 from tmm_sheets.compare.cad import cad_drawing, cad_file
 from tmm_sheets.compare.cad.cad_report import SHAPES
 from tmm_sheets.compare.cad.line_fit import lines
@@ -326,7 +326,7 @@ def test_a_bad_file_of_views(tmp_path, text, said):
     path = tmp_path / "views.toml"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(BadInput, match=said):
-        view_places.read(path, views_of(SHEET))
+        placing.read_places(path, views_of(SHEET))
 
 
 def test_the_wrong_sheet_is_told_and_the_right_one_named(tmp_path):

@@ -6,7 +6,7 @@ from urllib.parse import unquote
 
 import pytest
 
-from tmm_sheets.compare import codes, group, marking
+from tmm_sheets.compare import codes, group
 from tmm_sheets.compare.codes import Number, Remark
 from tmm_sheets.compare.findings import FindingRecord, Report
 from tmm_sheets.compare.report_pages import page
@@ -40,7 +40,7 @@ SIMPLE = group.MarkingScheme(full=100, costs={"unfilled": 0.5, "missing_sheet": 
 def scheme(tmp_path, text=SCHEME):
     path = tmp_path / "marks.toml"
     path.write_text(text, encoding="utf-8")
-    return marking.read(path)
+    return group.read_scheme(path)
 
 
 def drawing(project, sheet, path):
@@ -114,7 +114,7 @@ def test_marks_go_by_what_was_handed_in(folder, tmp_path):
     assert found["Four"]["mark"] is None
     assert "−47 (94 × 0.5)" in report.text
     # A file alone: of the sheets that it does not show nobody knows.
-    alone = [group.marked(of(None, 1, None), SIMPLE)
+    alone = [group.with_mark(of(None, 1, None), SIMPLE)
              for of in (numbers, drawing)]
     assert [(a.tree["mark"], a.tree["grade"], a.text.strip()) for a in alone] == [
         (53, "3", "mark 53 (3); without faults 100; numbers left empty, % −47 (94 × 0.5)"),

@@ -7,13 +7,12 @@ import pytest
 
 from tests.compare.simulation import paper
 from tmm_sheets import catalogue
-from tmm_sheets.compare import view_places
 from tmm_sheets.compare.elements import elements, views
 from tmm_sheets.compare.photo import placed_views as placing
 from tmm_sheets.compare.photo import tracing
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.traces import ExtraInk
-from tmm_sheets.compare.placing import Placing, moved
+from tmm_sheets.compare.placing import Placing, moved, read_places
 from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Text
 from tmm_sheets.errors import BadInput
 from tmm_sheets.project import Project
@@ -98,7 +97,7 @@ def file(tmp_path):
 
 def test_views_are_placed_and_fitted(file):
     ink, rim = drawn()
-    places = view_places.read(file, views(sheet()))
+    places = read_places(file, views(sheet()))
     placed = placing.place(known(), places, Flat(), ink)
     assert placed.left_out == ()
     assert len(placed.elements) == len(known())
@@ -172,6 +171,6 @@ def test_strange_ink_where_a_view_was_left_out():
 def test_scale_factor_of_a_view_without_one(tmp_path):
     path = tmp_path / "views.toml"
     path.write_text(f'[[view]]\nname = "{WHEEL}"\nours = [[713, 148]]\ntheirs = [[100, 100]]\nmu = 0.01\n', encoding="utf-8")
-    places = view_places.read(path, views(sheet()))
+    places = read_places(path, views(sheet()))
     with pytest.raises(BadInput, match="no scale factor of its own"):
         placing.place(known(), places, Flat(), drawn()[0])

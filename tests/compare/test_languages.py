@@ -15,13 +15,13 @@ from tests.compare.simulation import Camera, paper, photograph
 from tests.few import few
 from tmm_sheets.backends import dxf
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.measured import measured_units
+from tmm_sheets.compare.measured import measurable
 from tmm_sheets.compare.measured.collecting import measurables
 from tmm_sheets.compare.measured.measured_lengths import NAME
 from tmm_sheets.drawing.marks import Line
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.words import LANGUAGES, on_paper
+from tmm_sheets.words import LANGUAGES, on_paper, tell
 
 CYRILLIC = re.compile("[\u0400-\u04ff]")
 BRACES = re.compile(r"\{\w*\}")
@@ -207,8 +207,8 @@ def test_units_are_said_and_read_in_every_language(unit, said):
     found = set()
     for language in LANGUAGES:
         with to_reader(language):
-            found.add(measured_units.said(unit))
-            assert all(measured_units.times(other, unit) == 1 for other in said)
+            found.add(tell(unit))
+            assert all(measurable.unit_times(other, unit) == 1 for other in said)
     assert found == said
 
 

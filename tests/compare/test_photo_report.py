@@ -8,7 +8,7 @@ import pytest
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.findings import called, counted
-from tmm_sheets.compare.numbering import around, legend
+from tmm_sheets.compare.overlays import around, legend
 from tmm_sheets.compare.photo import overlay, photo_report
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.traces import InkTrace

@@ -63,9 +63,8 @@ def run_compare(
 
     from tmm_sheets.api import compared
     from tmm_sheets.compare import group as whole
-    from tmm_sheets.compare import marking
 
-    scheme = None if marks is None else marking.read(marks)
+    scheme = None if marks is None else whole.read_scheme(marks)
     opened = open_project(project, corrected)
     folder = folder_of(opened.variant, output)
     with Progress() as progress:
@@ -91,7 +90,7 @@ def run_compare(
                     click.echo(folder / name, err=True)
                 raise
             if scheme is not None:
-                report = whole.marked(report, scheme)
+                report = whole.with_mark(report, scheme)
     made = {folder / name: data for name, data in report.files.items()}
     if target is not None and target != "-":
         made[Path(target)] = (report.as_json() + "\n").encode()

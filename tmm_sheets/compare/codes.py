@@ -96,7 +96,9 @@ class Remark:
     @property
     def alike(self) -> Remark:
         """The same whoever made the mistake: without what is the student's own."""
-        return Remark(self.code, self.text, tuple((name, _alike(value)) for name, value in self.fields),
+        fields = tuple((name, value.alike if isinstance(value, Remark) else LEFT_OUT if isinstance(value, Own) else value)
+                       for name, value in self.fields)
+        return Remark(self.code, self.text, fields,
                       tuple(part.alike for part in self.parts), self.between)
 
 
@@ -106,10 +108,6 @@ def _filled(value: Any, own: bool) -> Any:
     if isinstance(value, Own) and not own:
         return LEFT_OUT
     return told(value) if isinstance(value, Number) else value
-
-
-def _alike(value: Any) -> Any:
-    return value.alike if isinstance(value, Remark) else LEFT_OUT if isinstance(value, Own) else value
 
 
 def joined(remarks: Iterable[Remark | None], between: str = ", ") -> Remark | None:

@@ -15,11 +15,11 @@ Points are complex, mm of the sheet, x to the right, y up (as everywhere in ``dr
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import ceil, pi
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
 
@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     from tmm_sheets.construction.step import Plan
     from tmm_sheets.project import Project
 
+K = TypeVar("K")
+T = TypeVar("T")
 Kind = Literal["line", "arc", "circle", "curve", "text", "hatch", "fill"]
 
 STRAIGHT = 0.01
@@ -146,13 +148,9 @@ def views(sheet: Composed) -> tuple[ElementView, ...]:
 
 def _scale_factor(sheet: Composed, view: View) -> float | None:
     """The scale factor of the plans that lie in a view; None where none does, where they have several or differ along the axes."""
-    frames = [f for f in sheet.frames if f.plan in sheet.scales and _within(view, sheet.parts[f.view].first)]
-    found = {mu for f in frames for mu in f.mu}
+    found = {mu for f in sheet.frames if f.plan in sheet.scales
+             and any(first <= sheet.parts[f.view].first < end for first, end in view.spans) for mu in f.mu}
     return found.pop() if len(found) == 1 else None
-
-
-def _within(view: View, mark: int) -> bool:
-    return any(first <= mark < end for first, end in view.spans)
 
 
 def elements(sheet: Composed) -> tuple[Element, ...]:
@@ -331,6 +329,14 @@ def _called(by: Provenance | None, sheet: Composed) -> str:
     name = said(by.name or sheet.symbols.get(by.step) or by.step.rpartition("/")[2])
     frame = sheet.frames[by.frame].position if by.frame >= 0 else ""
     return f"{name}({by.position})" if by.position not in ("", frame) else name
+
+
+def grouped(some: Iterable[T], by: Callable[[T], K]) -> dict[K, list[T]]:
+    """Things by what they have in common, each group in their order."""
+    found: dict[K, list[T]] = {}
+    for one in some:
+        found.setdefault(by(one), []).append(one)
+    return found
 
 
 CLEAR = 0.3

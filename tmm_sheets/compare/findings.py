@@ -6,17 +6,20 @@ import cmath
 import json
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Literal, TypeVar
 
+import numpy as np
+
+from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.codes import Number, Remark
-from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.story import Story, StoryTable, ToldMistake, listed
+from tmm_sheets.compare.elements import Element, grouped
+from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import marked, reader, tell, tell_n
 
 Verdict = Literal["green", "amber", "red"]
@@ -35,6 +38,92 @@ def verdict(deviation: float, tolerance: float) -> Verdict:
 def said_verdict(verdict: Verdict | None) -> str:
     """A verdict in the reader's words; nothing for none."""
     return tell(_COLOURS[verdict]) if verdict is not None else ""
+
+
+# --- what is told on paper or in a browser, before it is set ---------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Photo:
+    """A rectangle of a photographed sheet, mm, seen from straight above, as PNG."""
+
+    box: Box
+    png: bytes
+
+
+@dataclass(frozen=True)
+class StoryPicture:
+    """A part of a sheet, mm, y up: our lines, theirs, those that are wrong, and places with their numbers.
+
+    ``photo`` shows theirs where they are no lines.
+    """
+
+    ours: tuple[Points, ...]
+    theirs: tuple[Points, ...]
+    wrong: tuple[Points, ...] = ()
+    places: tuple[tuple[complex, float, str], ...] = ()
+    photo: Photo | None = None
+
+    @property
+    def box(self) -> Box:
+        """What it shows."""
+        some = [*self.ours, *self.wrong, *(np.array([at + r * (1 + 1j), at - r * (1 + 1j)]) for at, r, _ in self.places)]
+        some = some or list(self.theirs)
+        return Box.around(np.concatenate(some), 6.0) if some else Box(0.0, 0.0, 100.0, 60.0)
+
+
+@dataclass(frozen=True)
+class ToldMistake:
+    """Something done wrong: in which view, what, in how many words it needs, how bad ("red", "amber"), and what it looks like.
+
+    ``named`` where ``what`` is what was done, not how many lines are off; ``again`` is said instead where a view before has that.
+    """
+
+    where: str
+    what: str
+    verdict: str
+    details: tuple[str, ...] = ()
+    picture: StoryPicture | None = None
+    named: bool = False
+    again: str = ""
+
+
+@dataclass(frozen=True)
+class StoryTable:
+    """A table with a heading; columns are as wide as their texts need. ``verdicts`` of its rows, if they have any, colour them.
+
+    ``pages`` are those that the second cells of its rows lead to, from the folder of the reports; "" for none.
+    """
+
+    title: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    verdicts: tuple[str, ...] = ()
+    pages: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Story:
+    """A report to be read: what it is of, how it ended, and its three parts."""
+
+    title: str
+    about: tuple[str, ...]
+    mistakes: tuple[ToldMistake, ...] = ()
+    tables: tuple[StoryTable, ...] = ()
+    unjudged: tuple[str, ...] = field(default_factory=tuple)
+
+
+def listed(mistakes: Sequence[ToldMistake]) -> list[str]:
+    """Mistakes for the terminal, a line each; what was done is told once, with all views where it shows."""
+    where = grouped(mistakes, lambda m: (m.what, "" if m.named else m.where))
+    lines = [f"  {k}. {'; '.join(m.where for m in some)}: {what}" for k, ((what, _), some) in enumerate(where.items(), 1)]
+    return [tell("What is wrong") + ":", *lines, ""] if lines else []
+
+
+def clipped(lines: Sequence[Points], box: Box) -> tuple[Points, ...]:
+    """The lines that have something in a box, whole."""
+    return tuple(z for z in lines if len(z) and z.real.max() >= box.x0 and z.real.min() <= box.x1
+                 and z.imag.max() >= box.y0 and z.imag.min() <= box.y1)
 
 
 @dataclass(frozen=True)
@@ -214,8 +303,8 @@ Found = TypeVar("Found", bound=Finding)
 
 def worst(findings: Iterable[Found]) -> list[Found]:
     """The findings that are not green, red first, the worst first."""
-    bad = (f for f in findings if f.verdict in ("red", "amber"))
-    return sorted(bad, key=lambda f: (f.verdict != "red", -f.share, f.element.number))
+    return sorted((f for f in findings if f.verdict in ("red", "amber")),
+                  key=lambda f: (f.verdict != "red", -f.share, f.element.number))
 
 
 def counted(bad: Sequence[Finding]) -> str:
@@ -301,12 +390,13 @@ def millimetres(by: complex) -> Number:
     return Number(f"{abs(by):.{1 if abs(by) >= 1 else 2}f}")
 
 
-def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """The lines of a table."""
-    shown = [[c if len(c) <= WIDE else c[: WIDE - 1] + "…" for c in row] for row in rows[:SHOWN]]
+def table_lines(head: Sequence[str], rows: Sequence[Sequence[str]], right: Container[int] = (), whole: bool = False) -> list[str]:
+    """The lines of a table, the columns ``right`` ranged so; all rows and letters of it if it is to be ``whole``."""
+    shown = rows if whole else [[c if len(c) <= WIDE else c[: WIDE - 1] + "…" for c in row] for row in rows[:SHOWN]]
     widths = [max(len(row[k]) for row in (head, *shown)) for k in range(len(head))]
-    out = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in (head, *shown)]
-    if len(rows) > SHOWN:
+    out = ["  ".join(c.rjust(w) if k in right else c.ljust(w) for k, (c, w) in enumerate(zip(row, widths, strict=True))).rstrip()
+           for row in (head, *shown)]
+    if len(rows) > len(shown):
         out.append(tell("... and {n} more; --json has all").format(n=len(rows) - SHOWN))
     return out
 
@@ -328,9 +418,10 @@ def reported(source: Source, project: str, sheet: int, file: Path, said: Sequenc
     story = Story(title, (*said, *remarks), tuple(mistakes), tuple(tables), tuple(unjudged))
     lines = [*listed(story.mistakes), title, ""]
     for t in story.tables:
-        lines += [f"{t.title}:", *table(t.head, t.rows), ""]
-    tree = as_tree(source, project, sheet, records, start, unclaimed, summary, **beside)
-    return Report("\n".join([*lines, *story.unjudged, *said]), tree, {}, tuple(remarks), story, records, start)
+        lines += [f"{t.title}:", *table_lines(t.head, t.rows), ""]
+    return Report("\n".join([*lines, *story.unjudged, *said]),
+                  as_tree(source, project, sheet, records, start, unclaimed, summary, **beside), {}, tuple(remarks), story, records,
+                  start)
 
 
 def of_element(f: Finding, verdict: Outcome, **more: Any) -> FindingRecord:

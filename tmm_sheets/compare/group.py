@@ -4,6 +4,27 @@ A folder in it, or a file that lies in it alone, is a student's; ``projects.toml
 of the command: ``"Petrenko" = "sixbar/3:2"``; a path there is seen from the folder. What is compared how follows from the names:
 ``.dxf`` drawings, ``.csv`` measured numbers, ``.jpg``, ``.png``, ``.pdf`` photographs; of which sheet they are may stand in their
 names (``sheet 2.jpg``). What the program itself put there (``roster``) and nobody has changed is not handed in, nor are settings.
+
+Marks follow a scheme of the teacher's, what each kind of fault costs, in a TOML file::
+
+    full = 100                # of a work without faults
+
+    [costs]
+    mistake = 10              # each mistake named: something done otherwise, or a step drawn wrong with what follows from it
+    red = 2                   # each line or number beyond twice the tolerance that no such mistake explains
+    amber = 0.5               # each up to twice the tolerance
+    missing_view = 8          # each view that is not there
+    missing_table = 1         # each table, text or detail that is not found as it is on the sheet
+    unjudged = 0              # each file that could not be judged
+    unfilled = 0.5            # each percent of the numbers asked for that is left empty
+    missing_sheet = 20        # each sheet that nothing handed in shows, where no numbers were measured either
+
+    [at_most]                 # may be left out: the most that all faults of a kind cost together
+    amber = 5
+
+    [[grade]]                 # may be left out: the grades by marks, in any order
+    from = 90
+    name = "5"
 """
 
 from __future__ import annotations
@@ -14,24 +35,93 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import cached_property
+from math import inf, isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, get_args
 from unicodedata import normalize
+
+from pydantic import BeforeValidator, Field
 
 from tmm_sheets import files, toml_file
 from tmm_sheets.compare.codes import Remark
-from tmm_sheets.compare.findings import FindingRecord, Kind, Report
-from tmm_sheets.compare.marking import KINDS, FaultKind, MarkingScheme
+from tmm_sheets.compare.findings import FindingRecord, Kind, Report, Story, StoryTable, table_lines
 from tmm_sheets.compare.report_pages import page
-from tmm_sheets.compare.story import Story, StoryTable
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.numbers import told
 from tmm_sheets.output.build_store import untouched
+from tmm_sheets.task import messages
+from tmm_sheets.task.schema import Table
 from tmm_sheets.task.title_entries import FILE as SETTINGS
-from tmm_sheets.words import tell, tell_n
+from tmm_sheets.words import marked, tell, tell_n
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
+
+FaultKind = Literal["mistake", "red", "amber", "missing_view", "missing_table", "unjudged", "unfilled", "missing_sheet"]
+KINDS: tuple[FaultKind, ...] = get_args(FaultKind)
+"""Kinds of faults a scheme gives costs for."""
+
+
+def _not_below_zero(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value) or value < 0:
+        raise ValueError(tell("expected a number not below 0"))
+    return float(value)
+
+
+Amount = Annotated[float, BeforeValidator(_not_below_zero)]
+
+
+class GradeTable(Table):
+    """``[[grade]]``: the name of the grade from a mark on."""
+
+    from_: Amount = Field(alias="from", description=marked("the least mark of the grade"))
+    name: Annotated[str, Field(min_length=1)] = Field(description=marked("the name of the grade"))
+
+
+class MarkingScheme(Table):
+    """A scheme of marks: those of a faultless work, what each fault costs, caps by kind, and grades."""
+
+    full: Amount = Field(description=marked("the mark of a work without faults, such as full = 100"))
+    costs: dict[FaultKind, Amount] = Field(description=marked("a table of what each fault costs"))
+    at_most: dict[FaultKind, Amount] = Field(default={})
+    grade_: tuple[GradeTable, ...] = Field(default=(), alias="grade", description=marked("tables [[grade]] with from and name"))
+
+    @cached_property
+    def grades(self) -> tuple[tuple[float, str], ...]:
+        """Least marks and names of the grades, the highest first."""
+        return tuple(sorted(((g.from_, g.name) for g in self.grade_), key=lambda grade: -grade[0]))
+
+    def mark(self, faults: Mapping[FaultKind, int]) -> float:
+        """The mark of a work with so many faults of each kind, none below 0."""
+        return max(self.full - sum(self.lost(kind, n) for kind, n in faults.items()), 0.0)
+
+    def lost(self, kind: FaultKind, n: int) -> float:
+        """What so many faults of a kind cost."""
+        return min(self.costs.get(kind, 0.0) * n, self.at_most.get(kind, inf))
+
+    def counted(self, kind: FaultKind, n: int) -> str:
+        """How that comes about, in words."""
+        each, lost = self.costs.get(kind, 0.0), self.lost(kind, n)
+        said = tell("−{lost}") if n == 1 else tell("−{lost} ({n} × {each})")
+        said = tell("−{lost} (at most, not {n} × {each})") if lost < each * n else said
+        return said.format(lost=told(f"{lost:g}"), n=n, each=told(f"{each:g}")) if lost else "–"
+
+    def grade(self, mark: float) -> str:
+        """The name of the grade of a mark; empty without grades."""
+        return next((name for least, name in self.grades if mark >= least), self.grades[-1][1] if self.grades else "")
+
+
+def read_scheme(path: Path) -> MarkingScheme:
+    """Read a scheme.
+
+    Raises
+    ------
+    BadInput
+        If it cannot be read, or something in it is unknown, missing or no number; every problem with its line and field.
+    """
+    return messages.read(MarkingScheme, path)[0]
+
 
 DRAWINGS, NUMBERS, PICTURES = (".dxf",), (".csv",), (".jpg", ".jpeg", ".png", ".pdf")
 """Endings of the names of what is compared."""
@@ -149,7 +239,7 @@ def compare(folder: Path, project: str, opened: Callable[[str], Project], judged
     return _report(folder, students, scheme)
 
 
-def marked(report: Report, scheme: MarkingScheme) -> Report:
+def with_mark(report: Report, scheme: MarkingScheme) -> Report:
     """The report on one file with its mark: below the table, on its pages, in the JSON."""
     work = Student("", "", (Judgement("", *_faults(report), report=report),))
     mark = scheme.mark(work.faults)
@@ -250,8 +340,7 @@ def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project], 
     except Exception as e:  # a defect that one file shows must not cost all others their rows
         if os.environ.get("TMM_SHEETS_TRACEBACK"):
             raise
-        why = tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}")
-        return Judgement(file, {"unjudged": 1}, refused=why)
+        return Judgement(file, {"unjudged": 1}, refused=tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}"))
     faults, mistakes = _faults(report)
     return Judgement(file, faults, mistakes, report=report)
 
@@ -285,8 +374,8 @@ def _report(folder: Path, students: Sequence[Student], scheme: MarkingScheme | N
     nothing, made = tell("{student}: no file"), tell("{student}: no file but those that were made: {files}")
     refused += [(made if s.made else nothing).format(student=s.name, files=", ".join(s.made)) for s in students if not s.files]
     title = tell("Group: {folder}").format(folder=folder.resolve().name)
-    about = tell_n("{n} student", "{n} students", len(students)).format(n=len(students))
-    story = Story(title, (about,), (), tuple(tables), tuple(refused))
+    story = Story(title, (tell_n("{n} student", "{n} students", len(students)).format(n=len(students)),), (), tuple(tables),
+                  tuple(refused))
     pages = {f"{s.name}/{f.file}.html": page(f.report, ".html", s.name) for s in students for f in s.files
              if f.report is not None}
     return Report(_text(story), _tree(students, scheme), pages, (), story)
@@ -315,8 +404,8 @@ def _tables(students: Sequence[Student], scheme: MarkingScheme | None) -> Iterat
                 pages=tuple("" if f.report is None else f"{s.name}/{f.file}.html" for s, f in files))
     if made:
         yield StoryTable(tell("Mistakes of each"), (tell("student"), tell("mistake")), tuple(made))
-        most = _most_made(students)[:MOST]
-        yield StoryTable(tell("Mistakes most made"), (tell("students"), tell("mistake")), tuple((str(n), m) for m, n in most))
+        yield StoryTable(tell("Mistakes most made"), (tell("students"), tell("mistake")),
+                         tuple((str(n), m) for m, n in _most_made(students)[:MOST]))
 
 
 def _marks(students: Sequence[Student], scheme: MarkingScheme) -> StoryTable:
@@ -324,8 +413,8 @@ def _marks(students: Sequence[Student], scheme: MarkingScheme) -> StoryTable:
     kinds = [(kind, said) for kind, said in zip(KINDS, called_kinds(), strict=True) if scheme.costs.get(kind)]
     rows = [(s.name, told(f"{scheme.full:g}"), *(scheme.counted(kind, s.faults[kind]) for kind, _ in kinds), told(f"{mark:.4g}"))
             for s in students if (mark := s.mark(scheme)) is not None]
-    head = (tell("student"), tell("without faults"), *(said for _, said in kinds), tell("mark"))
-    return StoryTable(tell("How the marks came about"), head, tuple(rows))
+    return StoryTable(tell("How the marks came about"),
+                      (tell("student"), tell("without faults"), *(said for _, said in kinds), tell("mark")), tuple(rows))
 
 
 def called_kinds() -> tuple[str, ...]:
@@ -340,16 +429,13 @@ def _most_made(students: Sequence[Student]) -> list[tuple[str, int]]:
     for s in students:
         for key, remark in {m.alike: m.told for f in s.files for m in f.mistakes}.items():
             made.setdefault(key, []).append(remark)
-    most = sorted(made.values(), key=len, reverse=True)
-    return [(some[0].said(own=len(set(some)) == 1), len(some)) for some in most]
+    return [(some[0].said(own=len(set(some)) == 1), len(some)) for some in sorted(made.values(), key=len, reverse=True)]
 
 
 def _text(story: Story) -> str:
     out = [story.title, *story.about]
     for table in story.tables:
-        widths = [max(len(row[k]) for row in (table.head, *table.rows)) for k in range(len(table.head))]
-        out += ["", table.title]
-        out += ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in (table.head, *table.rows)]
+        out += ["", table.title, *table_lines(table.head, table.rows, whole=True)]
     if story.unjudged:
         out += ["", tell("What could not be judged, and why"), *(f"  {line}" for line in story.unjudged)]
     return "\n".join(out)

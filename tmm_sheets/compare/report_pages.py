@@ -21,9 +21,8 @@ from reportlab.pdfbase.ttfonts import TTFont
 from reportlab.platypus import KeepTogether, LongTable, Paragraph, SimpleDocTemplate, Spacer, TableStyle
 
 from tmm_sheets.backends.pdf import CREATOR, FONT
-from tmm_sheets.compare.findings import Report
-from tmm_sheets.compare.numbering import numbered
-from tmm_sheets.compare.story import Story, StoryPicture, StoryTable, ToldMistake, clipped
+from tmm_sheets.compare.findings import Report, Story, StoryPicture, StoryTable, ToldMistake, clipped
+from tmm_sheets.compare.overlays import numbered
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.resources import template
 from tmm_sheets.words import reader, tell
@@ -178,15 +177,11 @@ def _mistake(m: ToldMistake) -> Any:
     what = _said(m.again or m.what)
     parts: list[Any] = [Spacer(0, 5), Paragraph(_said(m.where), WHERE),
                         Paragraph(f'<font color="{SIDES[m.verdict].hexval().replace("0x", "#")}">■</font> {what}'
-                                  if _has("■") else what, TEXT)]
+                                  if ord("■") in pdfmetrics.getFont(FONT).face.charToGlyph else what, TEXT)]
     parts += [Paragraph("– " + _said(line), SMALL) for line in m.details]
     if m.picture is not None:
         parts += [Spacer(0, 3), _picture(m.picture)]
     return KeepTogether(parts)
-
-
-def _has(letter: str) -> bool:
-    return ord(letter) in pdfmetrics.getFont(FONT).face.charToGlyph
 
 
 def _table(table: StoryTable) -> Any:

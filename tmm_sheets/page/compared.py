@@ -70,11 +70,12 @@ def _drawing(project: Project, n: int | None, path: Path, told: Callable[[str], 
     from dataclasses import replace
 
     from tmm_sheets.backends import svg
-    from tmm_sheets.compare.cad import cad_drawing, cad_overlay
+    from tmm_sheets.compare import overlays
+    from tmm_sheets.compare.cad import cad_drawing
     from tmm_sheets.drawing.marks import Polyline
 
     e = cad_drawing.compared(project, n, path, None, PENCIL, told)
-    theirs = svg.render(replace(e.blank, marks=tuple(cad_overlay.theirs(e.space))))
+    theirs = svg.render(replace(e.blank, marks=tuple(overlays.theirs(e.space))))
     exact = svg.render(replace(e.blank, marks=tuple(Polyline(z, "thin") for z in e.exact)))
     pictures = {"theirs": _inline("image/svg+xml", theirs), "ours": _inline("image/svg+xml", exact)}
     return _found(e.report) | pictures | {"sheet": e.sheet}

@@ -180,8 +180,7 @@ def group(asked: Mapping[str, str], say: Say) -> Message:
     """
     import json
 
-    from tmm_sheets.compare.group import called_kinds
-    from tmm_sheets.compare.marking import KINDS
+    from tmm_sheets.compare.group import KINDS, called_kinds
 
     opened(asked)
     file, tree = _written(asked), Path("group.json")

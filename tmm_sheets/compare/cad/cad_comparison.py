@@ -5,6 +5,7 @@ Elements that have ink everywhere along them claim it; later steps look among th
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -29,7 +30,7 @@ from tmm_sheets.compare.cad.line_fit import (
     union,
 )
 from tmm_sheets.compare.codes import Remark
-from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.compare.elements import Element, ElementView, grouped
 from tmm_sheets.compare.findings import Finding, Verdict, verdict
 from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.drawing.marks import Fill, Line, Points, Text
@@ -123,26 +124,24 @@ class LookFinding:
 
 
 @dataclass(frozen=True)
-class AbsentKind:
-    """That a view leaves out so many elements of a kind (of :data:`~tmm_sheets.compare.cad.cad_extras.KINDS`), or positions."""
-
-    view: ElementView
-    kind: str
-    count: int
-
-
-@dataclass(frozen=True)
 class CadOutcome:
-    """Findings of every element in its order, extra ink, longest first, wrong line types and widths with ``notes`` on them.
-
-    ``absent`` is what plain drawings leave out, view by view.
-    """
+    """Findings of every element in its order, extra ink, longest first, wrong line types and widths with ``notes`` on them."""
 
     findings: tuple[CadFinding, ...]
     extras: tuple[ExtraStroke, ...]
     looks: tuple[LookFinding, ...] = ()
     notes: tuple[str, ...] = ()
-    absent: tuple[AbsentKind, ...] = ()
+
+    @cached_property
+    def by_view(self) -> dict[ElementView, list[CadFinding]]:
+        """The findings of each view."""
+        return grouped(self.findings, lambda f: f.element.view)
+
+    @property
+    def absent(self) -> list[tuple[ElementView, str, int]]:
+        """What views leave out, view by view: the kind (of :data:`~tmm_sheets.compare.cad.cad_extras.KINDS`), and how many."""
+        return [(view, kind, n) for view, found in self.by_view.items()
+                for kind, n in Counter(f.absent for f in found if f.absent).items()]
 
 
 SIZE_OF_SYMBOL = 1.0
@@ -256,8 +255,8 @@ class Comparison:
         e = self.elements[n]
         z = e.points
         middle, reach = (middle_of(z), reach_of(z)) if at is None else (at, min(reach_of(z), 5.0))
-        judged = verdict(deviation, self.tolerance)
-        return CadFinding(e, judged, deviation, remark, middle, reach, shift, turn, size, missing, entities)
+        return CadFinding(e, verdict(deviation, self.tolerance), deviation, remark, middle, reach, shift, turn, size, missing,
+                          entities)
 
     def at(self, n: int, t: float) -> complex:
         """The point at a distance along the path of an element, mm."""

@@ -22,12 +22,11 @@ import numpy as np
 
 from tmm_sheets import apart, words
 from tmm_sheets.box import Box
-from tmm_sheets.compare import codes, view_places
+from tmm_sheets.compare import codes, overlays
 from tmm_sheets.compare.cad import (
     cad_extras,
     cad_file,
     cad_lettering,
-    cad_overlay,
     cad_report,
     displaced_lines,
     line_styles,
@@ -46,7 +45,7 @@ from tmm_sheets.compare.diagnosis.built_plan import DrawnPlan, FigureOf, built_o
 from tmm_sheets.compare.elements import Element, ElementView, KnownSheet, drawn, interruptions, known_sheet, sheet_numbers
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.findings import Report, verdict, worst
-from tmm_sheets.compare.placing import BESIDE, Placing, links, moved, symbol
+from tmm_sheets.compare.placing import BESIDE, Placing, links, moved, read_places, symbol
 from tmm_sheets.drawing.marks import Drawing, Points
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.errors import BadInput, CannotBuild
@@ -86,8 +85,8 @@ def as_built(finding: CadFinding | None, was: Element, now: Element, move: Placi
     """
     if finding is None:
         there = moved(was, move)
-        at = complex(move(now.points[0]))
-        return CadFinding(there, verdict(there.length, tolerance), there.length, codes.VANISHED(), at, 3.0, follows=True)
+        return CadFinding(there, verdict(there.length, tolerance), there.length, codes.VANISHED(), complex(move(now.points[0])),
+                          3.0, follows=True)
     off = float(np.abs(move(now.points) - move(was.points)).max()) if len(now.points) == len(was.points) else 0.0
     if finding.verdict is None or off <= tolerance or was.kind == "text":
         return finding
@@ -109,11 +108,10 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     state = Comparison(elements, space, moves, tolerance)
     _not_compared(state)
     _right(state)
-    cad_extras.left_out(state, cad_extras.KINDS - cad_extras.FOUND_LAST)
+    cad_extras.left_out(state, cad_extras.KINDS.keys() - cad_extras.FOUND_LAST)
     cad_lettering.lettering(state)
     symbol_matching.hatching(state)
-    rest = left(state.theirs, state.claimed())
-    displaced_lines.straight(state, rest)
+    displaced_lines.straight(state, left(state.theirs, state.claimed()))
     displaced_lines.shapes(state, left(state.theirs, state.claimed()))
     displaced_lines.incomplete(state)
     symbol_matching.filled(state)
@@ -126,8 +124,7 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
         if n not in state.found:
             state.found[n] = state.finding(n, 0.0, None)
     looks, notes = line_styles.looks(state)
-    found = tuple(state.found[n] for n in range(len(state.elements)))
-    return CadOutcome(found, extras, looks, notes, cad_extras.absent_kinds(found))
+    return CadOutcome(tuple(state.found[n] for n in range(len(state.elements))), extras, looks, notes)
 
 
 def _not_compared(state: Comparison) -> None:
@@ -254,7 +251,7 @@ def compared(project: Project, sheet: int | None, path: Path, views: Path | None
     project : the project the drawing is of
     sheet : number of the sheet from 1, None for the one it fits best
     path : the drawing
-    views : file of the views that are not in their places (:mod:`~tmm_sheets.compare.view_places`), None without one
+    views : file of the views that are not in their places (:mod:`~tmm_sheets.compare.placing`), None without one
     pencil : how far a point may be off, mm
     say : told what is being done
 
@@ -302,7 +299,7 @@ def _of_plans(project: Project, sheet: int, path: Path, space: DrawingSpace, jud
     exact = tuple(shift(z) for z in plan_report.exact_lines(judged))
     on_paper_ = scaled.placed(shift)
     places = [(complex(shift(at)), *rest) for at, *rest in plan_report.marked_places(judged)]
-    files = cad_overlay.files(sheet, blank, exact, on_paper_, places)  # type: ignore[arg-type]
+    files = overlays.files(sheet, blank, exact, on_paper_, places)  # type: ignore[arg-type]
     return ComparedDrawing(replace(report, files=files), sheet, blank, on_paper_, exact)
 
 
@@ -324,14 +321,12 @@ def _of_sheet(project: Project, found: cad_report.ExaminedDrawing, path: Path, p
     say(tell("overlay"))
     outcome, laid = found.outcome, found.laid
     gone = cad_report.gone(outcome)
-    shown = [f for f in worst(outcome.findings) if f.element.view not in gone]
-    places = [(f.at, f.reach, str(f.element.number), str(f.verdict)) for f in shown]
+    places = [(f.at, f.reach, str(f.element.number), str(f.verdict)) for f in worst(outcome.findings) if f.element.view not in gone]
     places += [(x.at, x.reach, f"+{k}", str(x.verdict)) for k, x in enumerate(outcome.extras, 1)]
     looks = [(look.places, f"~{k}") for k, look in enumerate(outcome.looks, 1)]
     exact = tuple(p for e in found.exact for p in drawn(e))
-    files = cad_overlay.files(laid.known.n, laid.known.sheet.drawing, exact, found.space, places, looks)
-    name = project.variant.project.name
-    report = replace(cad_report.report(name, path, found, pencil), files=files)
+    files = overlays.files(laid.known.n, laid.known.sheet.drawing, exact, found.space, places, looks)
+    report = replace(cad_report.report(project.variant.project.name, path, found, pencil), files=files)
     blank = replace(laid.known.sheet.drawing, marks=(), views=(), dimensions=(), forms=())
     return ComparedDrawing(report, laid.known.n, blank, found.space, exact)
 
@@ -357,7 +352,7 @@ def _examined(project: Project, views: Path | None, pencil: float, say: Callable
     """The contents of a drawing compared with the sheets known, in its language."""
     say(tell("laying it over the sheet"))
     laid = register(known, ink)
-    given = view_places.read(views, views_of(laid.known.sheet)) if views is not None else ()
+    given = read_places(views, views_of(laid.known.sheet)) if views is not None else ()
     if laid.share < LOST / 2 and not given:
         return None
     space = laid.space.placed(laid.placing)
@@ -404,10 +399,6 @@ def _matched(known: Sequence[Element], now: Sequence[Element], absent: Collectio
     return replace(outcome, findings=tuple(map(finding, known, now)))
 
 
-def _judged_lines(outcome: CadOutcome) -> list[CadFinding]:
-    return [f for f in outcome.findings if f.element.kind != "text" and f.element.view.n and f.verdict is not None]
-
-
 def _green(found: Sequence[CadFinding]) -> float:
     """Share of the findings that are green, or off as follows from a mistake."""
     return sum(f.verdict == "green" or f.follows for f in found) / max(len(found), 1)
@@ -415,11 +406,10 @@ def _green(found: Sequence[CadFinding]) -> float:
 
 def _of_this_sheet(outcome: CadOutcome) -> bool:
     """Whether enough lines are right on the whole sheet, or in one view."""
-    found = _judged_lines(outcome)
-    by_view: dict[ElementView, list[CadFinding]] = {}
-    for f in found:
-        by_view.setdefault(f.element.view, []).append(f)
-    return _green(found) >= LOST or any(len(of_view) > 10 and _green(of_view) > 0.7 for of_view in by_view.values())
+    by_view = [[f for f in found if f.element.kind != "text" and f.verdict is not None]
+               for view, found in outcome.by_view.items() if view.n]
+    every = [f for found in by_view for f in found]
+    return _green(every) >= LOST or any(len(found) > 10 and _green(found) > 0.7 for found in by_view)
 
 
 def _other_sheet(project: Project, ink: CadInk, asked: int | None) -> int | None:

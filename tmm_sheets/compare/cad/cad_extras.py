@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +20,6 @@ from tmm_sheets.compare.cad.cad_comparison import (
     BEYOND,
     CURVE_REACH,
     LOOSE_STYLES,
-    AbsentKind,
     CadFinding,
     Comparison,
     ExtraStroke,
@@ -28,14 +27,14 @@ from tmm_sheets.compare.cad.cad_comparison import (
     reach_of,
 )
 from tmm_sheets.compare.cad.cad_ink import Entity, normal
-from tmm_sheets.compare.cad.line_fit import KnownLines, Left, common, extent, hanging_together, left, lines, pieces, shapes
+from tmm_sheets.compare.cad.line_fit import KnownLines, Left, Numbers, common, extent, hanging_together, left, lines, pieces, shapes
 from tmm_sheets.compare.cad.symbol_matching import AT_TIP
 from tmm_sheets.compare.codes import Number, joined
-from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.compare.elements import Element, grouped
 from tmm_sheets.compare.findings import farthest, place, verdict
 from tmm_sheets.compare.placing import HINGE
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.words import tell_n
+from tmm_sheets.words import marked_n
 
 FEW = 0.35
 """Share of what there should be of a kind below which it is left out."""
@@ -46,8 +45,20 @@ DRAWN_SHARE = 0.6
 FOUND_LAST = frozenset({"text", "point", "hatch"})
 """Kinds of what is looked for when lines have their ink."""
 
-KINDS = frozenset({"construction", "symbol", "joint", "arrow", "dimension", "table", "hatch", "frame", "axis", "point", "text"})
-"""What may be left out."""
+KINDS: Mapping[str, tuple[str, str]] = {
+    "construction": marked_n("{n} construction line", "{n} construction lines"),
+    "symbol": marked_n("{n} line of a symbol", "{n} lines of symbols"),
+    "joint": marked_n("{n} circle of a joint", "{n} circles of joints"),
+    "arrow": marked_n("{n} round arrow", "{n} round arrows"),
+    "dimension": marked_n("{n} line of a dimension", "{n} lines of dimensions"),
+    "table": marked_n("{n} line of a table", "{n} lines of a table"),
+    "hatch": marked_n("{n} hatching", "{n} hatchings"),
+    "frame": marked_n("{n} line of a frame", "{n} lines of a frame"),
+    "axis": marked_n("{n} line of the axes", "{n} lines of the axes"),
+    "point": marked_n("{n} dot", "{n} dots"),
+    "text": marked_n("{n} text", "{n} texts"),
+}
+"""What may be left out, and how many of a kind in words."""
 
 
 def kind_of(e: Element) -> str:
@@ -63,30 +74,11 @@ def kind_of(e: Element) -> str:
     return e.role if e.role in KINDS else ""
 
 
-def said_absent(kind: str, n: int) -> str:
-    """How many elements of a kind, in words."""
-    words = {
-        "construction": tell_n("{n} construction line", "{n} construction lines", n),
-        "symbol": tell_n("{n} line of a symbol", "{n} lines of symbols", n),
-        "joint": tell_n("{n} circle of a joint", "{n} circles of joints", n),
-        "arrow": tell_n("{n} round arrow", "{n} round arrows", n),
-        "dimension": tell_n("{n} line of a dimension", "{n} lines of dimensions", n),
-        "table": tell_n("{n} line of a table", "{n} lines of a table", n),
-        "hatch": tell_n("{n} hatching", "{n} hatchings", n),
-        "frame": tell_n("{n} line of a frame", "{n} lines of a frame", n),
-        "axis": tell_n("{n} line of the axes", "{n} lines of the axes", n),
-        "point": tell_n("{n} dot", "{n} dots", n),
-        "text": tell_n("{n} text", "{n} texts", n),
-    }
-    return words[kind].format(n=n)
-
-
 def left_out(state: Comparison, kinds: Collection[str]) -> None:
     """Set aside the kinds that views do not have; of a view in which nothing tells, the whole drawing does."""
-    of: dict[tuple[str, ElementView], list[int]] = {}
-    for n, e in enumerate(state.elements):
-        if e.view.n and kind_of(e) in kinds and (n not in state.found or state.found[n].verdict is not None):
-            of.setdefault((kind_of(e), e.view), []).append(n)
+    judged = [n for n, e in enumerate(state.elements)
+              if e.view.n and kind_of(e) in kinds and (n not in state.found or state.found[n].verdict is not None)]
+    of = grouped(judged, lambda n: (kind_of(state.elements[n]), state.elements[n].view))
     drawn = {n: there > DRAWN_SHARE for some in of.values() for n in some if (there := _share(state, n)) is not None}
     for (kind, view), numbers in of.items():
         if view in state.moved and kind in FOUND_LAST:
@@ -118,28 +110,15 @@ def _other_words(state: Comparison, n: int) -> bool:
     return not e.step or cad_lettering.meant(finding.says) in letters or cad_lettering.says_less(finding.says, e.text)
 
 
-def absent_kinds(findings: Iterable[CadFinding]) -> tuple[AbsentKind, ...]:
-    """What each view leaves out, by view and kind."""
-    left: dict[ElementView, dict[str, set[int]]] = {}
-    for f in findings:
-        if f.absent:
-            left.setdefault(f.element.view, {}).setdefault(f.absent, set()).add(f.element.number)
-    return tuple(AbsentKind(view, kind, len(some)) for view, kinds in left.items() for kind, some in kinds.items())
-
-
 def _set_aside(state: Comparison, numbers: Sequence[int], kind: str) -> None:
     """Leave elements out of the comparison; those of them that are drawn all the same are not extra."""
     for n in numbers:
         e = state.elements[n]
         state.found[n] = CadFinding(e, None, 0.0, codes.NOT_DRAWN(), e.middle, 5.0, missing=True, absent=kind)
-        inked = state.inked.pop(n, [])
-        if extent(inked) > DRAWN_SHARE * state.whole(n):
+        if extent(state.inked.pop(n, [])) > DRAWN_SHARE * state.whole(n):
             state.claims.append(state.in_place.only(state.in_place_of == n))
-    state.zones += [_disc(e.centre) for e in (state.elements[n] for n in numbers) if e.kind == "circle" and e.radius <= HINGE]
-
-
-def _disc(centre: complex) -> npt.NDArray[np.complex128]:
-    return np.asarray(centre + (HINGE + 0.2) * np.exp(2j * np.pi * np.arange(12) / 12))
+    disc = (HINGE + 0.2) * np.exp(2j * np.pi * np.arange(12) / 12)
+    state.zones += [e.centre + disc for e in (state.elements[n] for n in numbers) if e.kind == "circle" and e.radius <= HINGE]
 
 
 SHORT = 12.0
@@ -148,6 +127,8 @@ LEAST = 1.0
 """Shortest stretch of extra ink, mm."""
 ROUND = frozenset({"ARC", "CIRCLE", "ELLIPSE"})
 """Entities that are told as arcs."""
+SHORT_GAP = 4.5
+"""Gap between two lines of the sheet, mm, that a line drawn through may close."""
 TOUCHING = 0.06
 """Distance of places that count as one, mm."""
 FILLED, PART = 3.0, 1.5
@@ -155,8 +136,13 @@ FILLED, PART = 3.0, 1.5
 HEAP = 14.0
 """Width plus height of the smallest extra ink that is not put together with its neighbours, mm."""
 
-Owners = Mapping[int, list[tuple[float, float, int]]]
-"""Stretches (from, to, element) that elements claim, by the piece of theirs."""
+
+class _Claims(NamedTuple):
+    """Stretches of ink that elements claim: from, to, mm along all their strokes one after another, and which element's each is."""
+
+    begin: Numbers
+    end: Numbers
+    of: npt.NDArray[np.int64]
 
 
 def extra(state: Comparison) -> tuple[ExtraStroke, ...]:
@@ -164,26 +150,30 @@ def extra(state: Comparison) -> tuple[ExtraStroke, ...]:
     rest = left(state.theirs, state.claimed())
     cad_lettering.strange_ink(state, rest)
     free = _outside_zones(state, rest)
-    owners = _owners(state)
+    along = np.cumsum(state.theirs.length) - state.theirs.length + state.theirs.owner  # strokes lie a millimetre apart
+    claims = _claims(state, along)
     found: list[tuple[list[Left], float]] = []
     excess: list[tuple[float, int, list[Left]]] = []
-    for chain in _chains(state, free):
+    for chain in _chains(along, free):
         size = sum(free[r] for r in chain)
         if size <= state.tolerance:
             continue
-        before, after = _neighbours(state, chain, owners)
-        if before is not None and after is not None and size < 4.5:
+        begin, end = along[chain[0].piece] + chain[0].a, along[chain[-1].piece] + chain[-1].b
+        before, after = (np.flatnonzero(np.abs(at) < TOUCHING) for at in (claims.end - begin, claims.begin - end))
+        if len(before) and len(after) and size < SHORT_GAP:
             continue  # one line drawn through where ours are two
-        n = before if before is not None else after
-        goes_on = n is not None and state.elements[n].kind in ("line", "arc", "curve") and _continues(state, n, chain, owners)
-        if n is not None and goes_on and state.found[n].verdict is not None:
+        beside = before if len(before) else after
+        n = int(claims.of[beside[(claims.end - claims.begin)[beside].argmax()]]) if len(beside) else -1
+        if n >= 0 and state.found[n].verdict is not None and _continues(state, n, chain, claims, along):
             excess.append((sum(r.b - r.a for r in chain), n, chain))
         elif size > LEAST:
             found.append((chain, size))
     for size, n, chain in sorted(excess, key=lambda x: -x[0]):
         _too_long(state, n, size, chain)
     drawn = pieces(state.theirs, [r for chain, _ in found for r in chain])
-    return tuple(sorted((*_extra_lines(state, found), *_extra_areas(state, drawn), *_extra_text(state)), key=lambda x: -x.length))
+    texts = (ExtraStroke("text", state.space.entities[w.entity], 0.0, w.at, max(w.width, 4.0) / 2, 1, w.text.strip())
+             for k, w in enumerate(state.space.writings) if k not in state.used_writings and normal(w.text))
+    return tuple(sorted((*_extra_lines(state, found), *_extra_areas(state, drawn), *texts), key=lambda x: -x.length))
 
 
 def _outside_zones(state: Comparison, rest: list[Left]) -> dict[Left, float]:
@@ -226,77 +216,46 @@ def _polygon(z: Points) -> Any:
     return shapely.Polygon(np.column_stack((z.real, z.imag)))
 
 
-def _chains(state: Comparison, rest: Iterable[Left]) -> Iterator[list[Left]]:
+def _chains(along: Numbers, rest: Iterable[Left]) -> Iterator[list[Left]]:
     """Stretches that follow one another along one stroke."""
     chain: list[Left] = []
     for r in sorted(rest):
-        if chain:
-            last = chain[-1]
-            next_piece = r.piece == last.piece + 1 and state.theirs.owner[r.piece] == state.theirs.owner[last.piece]
-            if next_piece and last.b > state.theirs.length[last.piece] - TOUCHING and r.a < TOUCHING:
-                chain.append(r)
-                continue
+        if chain and along[r.piece] + r.a > along[chain[-1].piece] + chain[-1].b + TOUCHING:
             yield chain
-        chain = [r]
+            chain = []
+        chain.append(r)
     if chain:
         yield chain
 
 
-def _owners(state: Comparison) -> dict[int, list[tuple[float, float, int]]]:
-    """Which elements claim which stretches of their pieces."""
+def _claims(state: Comparison, along: Numbers) -> _Claims:
+    """Which elements claim which stretches; what only crosses a line is none of it."""
     every, of = state.in_place, state.in_place_of
-    found: dict[int, list[tuple[float, float, int]]] = {}
-    for j, a, b, n in zip(every.theirs.tolist(), every.w0.tolist(), every.w1.tolist(), of.tolist(), strict=True):
-        if b - a > 0.3 or state.elements[n].kind != "line":
-            found.setdefault(j, []).append((a, b, n))
-    for n, parts in state.owned.items():
-        for j, a, b in parts:
-            found.setdefault(j, []).append((a, b, n))
-    return found
+    straight = np.array([e.kind == "line" for e in state.elements])
+    keep = (every.w1 - every.w0 > 0.3) | ~straight[of]
+    owned = np.array([(j, a, b, n) for n, parts in state.owned.items() for j, a, b in parts]).reshape(-1, 4)
+    piece = np.concatenate((every.theirs[keep], owned[:, 0].astype(np.int64)))
+    begin, end = (along[piece] + np.concatenate(x) for x in ((every.w0[keep], owned[:, 1]), (every.w1[keep], owned[:, 2])))
+    return _Claims(begin, end, np.concatenate((of[keep], owned[:, 3].astype(np.int64))))
 
 
-def _neighbours(state: Comparison, chain: list[Left], owners: Owners) -> tuple[int | None, int | None]:
-    """The elements whose ink the chain continues at its beginning and at its end."""
-    first, last, length = chain[0], chain[-1], state.theirs.length
-    before = _ending(owners, first.piece, first.a)
-    if before is None and first.a < TOUCHING and _same_line(state, first.piece, first.piece - 1):
-        before = _ending(owners, first.piece - 1, length[first.piece - 1])
-    after = _beginning(owners, last.piece, last.b)
-    if after is None and last.b > length[last.piece] - TOUCHING and _same_line(state, last.piece, last.piece + 1):
-        after = _beginning(owners, last.piece + 1, 0.0)
-    return before, after
-
-
-def _ending(owners: Owners, piece: int, at: float) -> int | None:
-    """The element with the longest claim that ends at a place on a piece."""
-    return max(((b - a, n) for a, b, n in owners.get(piece, ()) if abs(b - at) < TOUCHING), default=(0.0, None))[1]
-
-
-def _beginning(owners: Owners, piece: int, at: float) -> int | None:
-    return max(((b - a, n) for a, b, n in owners.get(piece, ()) if abs(a - at) < TOUCHING), default=(0.0, None))[1]
-
-
-def _same_line(state: Comparison, j: int, k: int) -> bool:
-    return 0 <= k < len(state.theirs.owner) and bool(state.theirs.owner[j] == state.theirs.owner[k])
-
-
-def _continues(state: Comparison, n: int, chain: list[Left], owners: Owners) -> bool:
+def _continues(state: Comparison, n: int, chain: list[Left], claims: _Claims, along: Numbers) -> bool:
     """Whether the chain goes on as the element does: straight, or along the same curve."""
     # A line that only crosses or touches the element is another one.
-    j = chain[0].piece
-    same = state.theirs.owner == state.theirs.owner[j]
-    mine = sum(b - a for k, parts in owners.items() if same[k] for a, b, m in parts if m == n)
-    if mine < 0.5 * state.whole(n) and mine < 0.3 * float(state.theirs.length[same].sum()):
+    e, j = state.elements[n], chain[0].piece
+    stroke = np.flatnonzero(state.theirs.owner == state.theirs.owner[j])
+    first, whole = along[stroke[0]], float(state.theirs.length[stroke].sum())
+    here = (claims.of == n) & (claims.begin >= first) & (claims.end <= first + whole + TOUCHING)
+    mine = float((claims.end - claims.begin)[here].sum())
+    if e.kind not in ("line", "arc", "curve") or (mine < 0.5 * state.whole(n) and mine < 0.3 * whole):
         return False
-    if state.elements[n].kind != "line":
+    if e.kind != "line":
         return True
-    z = state.elements[n].points
-    u = (z[-1] - z[0]) / abs(z[-1] - z[0])
-    d = state.theirs.b[chain[0].piece] - state.theirs.a[chain[0].piece]
+    u = (e.points[-1] - e.points[0]) / abs(e.points[-1] - e.points[0])
+    d = state.theirs.b[j] - state.theirs.a[j]
     middle = complex(state.ends(chain[0]).mean())
-    if 0 < ((middle - z[0]) * np.conj(u)).real < abs(z[-1] - z[0]):
-        return False  # beside the element, not beyond its end
-    return bool(abs((d * np.conj(u)).imag) < 0.03 * abs(d)) and len(chain) == 1
+    beyond = not 0 < ((middle - e.points[0]) * np.conj(u)).real < abs(e.points[-1] - e.points[0])  # its end, not beside it
+    return bool(beyond and abs((d * np.conj(u)).imag) < 0.03 * abs(d)) and len(chain) == 1
 
 
 def _too_long(state: Comparison, n: int, size: float, chain: list[Left]) -> None:
@@ -337,9 +296,7 @@ def _loop(state: Comparison, n: int, size: float, at: complex, chain: list[Left]
 
 def _extra_lines(state: Comparison, extra: list[tuple[list[Left], float]]) -> Iterator[ExtraStroke]:
     """Extra lines by entity; small ones that lie together (letters of a drawn text, a symbol) as one."""
-    by_entity: dict[int, list[tuple[list[Left], float]]] = {}
-    for chain, size in extra:
-        by_entity.setdefault(int(state.entity[chain[0].piece]), []).append((chain, size))
+    by_entity = grouped(extra, lambda chain: int(state.entity[chain[0][0].piece]))
     small: list[tuple[int, float, Points]] = []
     whole = np.zeros(len(state.space.entities))
     np.add.at(whole, state.entity, state.theirs.length)
@@ -378,9 +335,3 @@ def _extra_areas(state: Comparison, extra: KnownLines) -> Iterator[ExtraStroke]:
         if (np.abs(known - state.areas[k]) < reach).any() or extra.nearest(z, AT_TIP)[2].any():
             continue
         yield ExtraStroke("fill", state.space.entities[area.entity], around, middle_of(z), reach_of(z))
-
-
-def _extra_text(state: Comparison) -> Iterator[ExtraStroke]:
-    for k, w in enumerate(state.space.writings):
-        if k not in state.used_writings and normal(w.text):
-            yield ExtraStroke("text", state.space.entities[w.entity], 0.0, w.at, max(w.width, 4.0) / 2, 1, w.text.strip())

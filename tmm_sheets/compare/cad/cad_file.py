@@ -9,12 +9,11 @@ from __future__ import annotations
 import logging
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import replace
-from enum import IntEnum
 from io import BytesIO
-from itertools import chain, pairwise
+from itertools import chain, islice, pairwise
 from math import isfinite, radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -67,6 +66,7 @@ BINARY = b"AutoCAD Binary DXF"
 """How a binary DXF file begins."""
 OTHERS = {b"%PDF": "PDF", b"\x89PNG": "PNG", b"\xff\xd8\xff": "JPEG", b"PK\x03\x04": "ZIP", b"KF\x1a": "KOMPAS"}
 """How files of other kinds begin that are taken for drawings."""
+PICTURES = {"PDF", "PNG", "JPEG"}
 BEGINNING = re.compile(r"(?:\{|\\[ACFHQTWcfp][^;\\{}]*;|\\[LOKlok])*")
 HEIGHT = re.compile(r"\\H(\d*\.?\d+)(x?);")
 """Codes before the first letter of a text of several lines, and one of its height, or of that times so many."""
@@ -87,14 +87,9 @@ def read(path: Path) -> CadInk:
     unit = UNITS.get(int(document.header.get("$INSUNITS", 0)))
     reader = _DxfReader(document, path)
     model = reader.space(tell("model space"), document.modelspace())
-    spaces = [model]
-    for layout in document.layouts:
-        if not layout.is_modelspace:
-            space = reader.paper(layout, model)
-            if not space.empty:
-                spaces.append(space)
+    spaces = [model, *(reader.paper(layout, model) for layout in document.layouts if not layout.is_modelspace)]
     notes += reader.notes()
-    good = tuple(s for s in spaces if not s.empty)
+    good = tuple(s for s in spaces if s.strokes)
     if not good:
         said = "; ".join(notes)
         what = tell("nothing is drawn in it ({notes})") if said else tell("nothing is drawn in it")
@@ -156,9 +151,7 @@ def _refuse_others(path: Path, head: bytes) -> None:
         raise BadInput(Problem(tell("this is a DWG file, only DXF can be read"), str(path), hint=tell(AS_DXF)))
     for mark, name in OTHERS.items():
         if head.startswith(mark):
-            hints = [tell(AS_DXF)]
-            if name in ("PDF", "PNG", "JPEG"):
-                hints.append(tell("photographs and scans are compared with --image"))
+            hints = [tell(AS_DXF), *([tell("photographs and scans are compared with --image")] if name in PICTURES else [])]
             raise BadInput(Problem(tell("this is a {kind} file, not DXF").format(kind=name), str(path), hint="; ".join(hints)))
     if b"SECTION" not in head:
         raise BadInput(Problem(tell("this is not a DXF file"), str(path), hint=tell(AS_DXF)))
@@ -189,28 +182,21 @@ def words(text: str, encoding: str) -> str:
     from ezdxf.lldxf.encoding import decode_dxf_unicode, has_dxf_unicode
 
     if has_dxf_unicode(text):  # of a letter that the code page lacks: then that is the right one
-        return decode_dxf_unicode(text).encode("utf-8", "replace").decode("utf-8")
-    if text.isascii() or encoding.lower().replace("-", "") in ("utf8", "cp1251"):
-        return text.encode("utf-8", "replace").decode("utf-8")
-    try:
-        data = text.encode(encoding, "surrogateescape")
-    except (UnicodeError, LookupError):
-        return text.encode("utf-8", "replace").decode("utf-8")
-    try:
-        return data.decode("utf-8")
-    except UnicodeDecodeError:
-        pass
-    # The sign of a diameter is a letter to Unicode, and Ш in the Russian code page.
-    letters = [c for c in text if (c.isalpha() and c not in "Øø") or "\udc80" <= c <= "\udcff"]
-    if sum(c > "\x7f" for c in letters) > len(letters) / 2:
-        return data.decode("cp1251", "replace")
+        text = decode_dxf_unicode(text)
+    elif not text.isascii() and encoding.lower().replace("-", "") not in ("utf8", "cp1251"):
+        with suppress(UnicodeError, LookupError):
+            data = text.encode(encoding, "surrogateescape")
+            with suppress(UnicodeDecodeError):
+                return data.decode("utf-8")
+            # The sign of a diameter is a letter to Unicode, and Ш in the Russian code page.
+            letters = [c for c in text if (c.isalpha() and c not in "Øø") or "\udc80" <= c <= "\udcff"]
+            if sum(c > "\x7f" for c in letters) > len(letters) / 2:
+                return data.decode("cp1251", "replace")
     return text.encode("utf-8", "replace").decode("utf-8")
 
 
-class _WeightCode(IntEnum):
-    """Codes of line weights."""
-
-    BYLAYER, BYBLOCK, DEFAULT = -1, -2, -3
+BYLAYER, BYBLOCK, DEFAULT = -1, -2, -3
+"""Codes of line weights."""
 
 
 class _EntityLook(NamedTuple):
@@ -221,14 +207,6 @@ class _EntityLook(NamedTuple):
     weight: int
 
 
-class _Contents(NamedTuple):
-    """What is drawn in a layout, as far as it was read."""
-
-    strokes: list[DrawnStroke]
-    areas: list[Area]
-    writings: list[Writing]
-
-
 class _DxfReader:
     """Takes entities apart and counts those it cannot read."""
 
@@ -237,20 +215,13 @@ class _DxfReader:
         self.file = file
         self.parts = self.points = 0
         self.weights: dict[str, int] = {}
-        self.hidden = {"defpoints"}
-        self.frozen: set[str] = set()
         self.patterns = {line.dxf.name.lower(): _pattern(line) for line in document.linetypes}
         scale = float(document.header.get("$LTSCALE", 1.0))
         self.dashes = {line.dxf.name.lower(): scale * max(_dashes(line), default=0.0) for line in document.linetypes}
-        self.layers: dict[str, _EntityLook] = {}
-        for layer in document.layers:
-            name = layer.dxf.name
-            self.layers[name.lower()] = _EntityLook(name, layer.dxf.get("linetype", "Continuous").lower(),
-                                              int(layer.dxf.get("lineweight", _WeightCode.DEFAULT)))
-            if layer.is_off() or layer.is_frozen():
-                self.hidden.add(layer.dxf.name.lower())
-            if layer.is_frozen():
-                self.frozen.add(layer.dxf.name.lower())
+        self.layers = {layer.dxf.name.lower(): _EntityLook(layer.dxf.name, layer.dxf.get("linetype", "Continuous").lower(),
+                                                           int(layer.dxf.get("lineweight", DEFAULT))) for layer in document.layers}
+        self.frozen = {layer.dxf.name.lower() for layer in document.layers if layer.is_frozen()}
+        self.hidden = {"defpoints", *self.frozen, *(layer.dxf.name.lower() for layer in document.layers if layer.is_off())}
         self.unread: Counter[str] = Counter()
         self.nowhere = 0
         self.skipped = self.copied = 0
@@ -259,23 +230,19 @@ class _DxfReader:
 
     def notes(self) -> list[str]:
         """What was left out."""
-        found = []
-        if self.unread:
-            what = ", ".join(f"{n} {kind}" for kind, n in sorted(self.unread.items()))
-            found.append(tell("left out, not lines or text: {what}").format(what=what))
-        if self.nowhere:
-            found.append(tell("left out, with coordinates that are no numbers: {n} entities").format(n=self.nowhere))
-        if self.copied:
-            found.append(tell("left out, in the place of {most} others: {n} lines").format(most=MOST_COPIES, n=self.copied))
-        if self.skipped:
-            found.append(tell("left out, on layers that are off or frozen: {n} entities").format(n=self.skipped))
-        if self.raised:
-            found.append(tell("some of the drawing has heights (z): it is seen from above"))
-        if self.stretched:
-            several = [f"{name} (1 : {told(f'{times:.3g}')})" for name, times in self.stretched.items()]
-            said = ", ".join([*several[:MOST_NAMED], *(["…"] if len(several) > MOST_NAMED else [])])
-            found.append(tell("blocks drawn out of proportion, width : height: {blocks}").format(blocks=said))
-        return found
+        unread = ", ".join(f"{n} {kind}" for kind, n in sorted(self.unread.items()))
+        blocks = [f"{name} (1 : {told(f'{times:.3g}')})" for name, times in self.stretched.items()]
+        more = ["…"] if len(blocks) > MOST_NAMED else []
+        said = {
+            tell("left out, not lines or text: {what}").format(what=unread): self.unread,
+            tell("left out, with coordinates that are no numbers: {n} entities").format(n=self.nowhere): self.nowhere,
+            tell("left out, in the place of {most} others: {n} lines").format(most=MOST_COPIES, n=self.copied): self.copied,
+            tell("left out, on layers that are off or frozen: {n} entities").format(n=self.skipped): self.skipped,
+            tell("some of the drawing has heights (z): it is seen from above"): self.raised,
+            tell("blocks drawn out of proportion, width : height: {blocks}").format(
+                blocks=", ".join([*blocks[:MOST_NAMED], *more])): self.stretched,
+        }
+        return [note for note, applies in said.items() if applies]
 
     def count(self, parts: int = 0, points: int = 0) -> None:
         """Take what was found into account: small files may come to more than the memory holds."""
@@ -290,7 +257,7 @@ class _DxfReader:
     def space(self, name: str, layout: Any) -> DrawingSpace:
         """Everything drawn in a layout."""
         entities: list[Entity] = []
-        found = _Contents([], [], [])
+        found: list[DrawnStroke | Area | Writing] = []
         try:
             self.count(parts=self._weight(layout))
         except RecursionError:
@@ -311,14 +278,14 @@ class _DxfReader:
                                    look.weight / 100 if look.weight >= 0 else None, _breadth(e, kind),
                                    self.dashes.get(look.linetype, 0.0) * float(e.dxf.get("ltscale", 1.0))))
             try:
-                self._take(e, kind, len(entities) - 1, fine, found)
+                found.extend(self._contents(e, kind, len(entities) - 1, fine))
             except (ValueError, TypeError, AttributeError, ZeroDivisionError, KeyError, IndexError, ArithmeticError):
-                self.unread[kind] += 1  # a broken entity must not hide the others
+                self.unread[kind] += 1  # a broken entity must not hide the others; what was read before an error stays
         return self._sound(name, entities, found, fine)
 
-    def _sound(self, name: str, entities: list[Entity], found: _Contents, fine: float) -> DrawingSpace:
+    def _sound(self, name: str, entities: list[Entity], found: Sequence[DrawnStroke | Area | Writing], fine: float) -> DrawingSpace:
         """A space without what has no size, whose coordinates are no numbers, or what lies in its own place again and again."""
-        strokes, areas, writings = found
+        strokes = [s for s in found if isinstance(s, DrawnStroke)]
         self.nowhere += len({s.entity for s in strokes if not _somewhere(s.points)})
         strokes = [s for s in strokes if len(s.points) > 1 and _somewhere(s.points)]
         copies = Counter[bytes]()
@@ -328,29 +295,29 @@ class _DxfReader:
             copies[place] += 1
             once += [s] if copies[place] <= MOST_COPIES else []
         self.copied += len(strokes) - len(once)
-        areas = [Area(_open_ended(a.points), a.entity, a.solid) for a in areas if _somewhere(a.points)]
-        areas = [a for a in areas if len(a.points) > 2]
-        writings = [w for w in writings if isfinite(w.height) and _somewhere(np.array([w.at])) and w.text.strip()]
-        return DrawingSpace(name, tuple(once), tuple(areas), tuple(writings), tuple(entities))
+        areas = [a._replace(points=_open_ended(a.points)) for a in found if isinstance(a, Area) and _somewhere(a.points)]
+        writings = (w for w in found if isinstance(w, Writing) and isfinite(w.height) and _somewhere(np.array([w.at]))
+                    and w.text.strip())
+        return DrawingSpace(name, tuple(once), tuple(a for a in areas if len(a.points) > 2), tuple(writings), tuple(entities))
 
-    def _take(self, e: Any, kind: str, n: int, fine: float, found: _Contents) -> None:
-        """Read one primitive, entity number ``n``; what was read before an error stays."""
+    def _contents(self, e: Any, kind: str, n: int, fine: float) -> Iterator[DrawnStroke | Area | Writing]:
+        """What one primitive, entity number ``n``, draws."""
         if kind in ("TEXT", "ATTRIB"):
-            found.writings.extend(_text(e, n, self.document.encoding))
+            yield from _text(e, n, self.document.encoding)
         elif kind == "MTEXT":
-            found.writings.extend(_mtext(e, n, self.document.encoding))
+            yield from _mtext(e, n, self.document.encoding)
         elif kind in ("SOLID", "TRACE"):
-            found.areas.append(Area(_xy(e.wcs_vertices()), n))
+            yield Area(_xy(e.wcs_vertices()), n)
         elif kind in ("HATCH", "MPOLYGON"):
             lines, outlines = _hatch(e, fine)
-            found.areas.extend(Area(p, n, not lines) for p in outlines)
-            found.strokes.extend(DrawnStroke(p, n) for p in lines)
             self.count(len(lines), sum(map(len, outlines)))
+            yield from (Area(p, n, not lines) for p in outlines)
+            yield from (DrawnStroke(p, n) for p in lines)
         else:
             for p in self._lines(e, kind, fine):
-                found.strokes.append(DrawnStroke(p, n))
                 self.count(points=len(p))
-            found.areas.extend(Area(p, n) for p in _wide(e, kind))
+                yield DrawnStroke(p, n)
+            yield from (Area(p, n) for p in _wide(e, kind))
 
     def paper(self, layout: Any, model: DrawingSpace) -> DrawingSpace:
         """A sheet of paper space together with what its viewports show of the model."""
@@ -360,7 +327,7 @@ class _DxfReader:
             if port.dxf.get("id", 1) == 1 or not port.dxf.get("status", 1) or port.dxf.layer.lower() in self.hidden:
                 continue
             height = float(port.dxf.view_height)
-            if not height > 0 or model.empty:
+            if not height > 0 or not model.strokes:
                 continue
             k = float(port.dxf.height) / height
             turn = k * np.exp(1j * radians(port.dxf.get("view_twist_angle", 0.0)))
@@ -384,7 +351,8 @@ class _DxfReader:
         total = 0
         for e in entities:
             total += 1
-            name = e.dxf.get("name", "") if e.dxftype() == "INSERT" else _geometry(e)
+            key = "name" if e.dxftype() == "INSERT" else "geometry"  # the block that a dimension or a table is drawn by
+            name = str(e.dxf.get(key, "") or "") if e.dxf.is_supported(key) else ""
             if name:
                 if name not in self.weights:
                     self.weights[name] = 0
@@ -425,23 +393,20 @@ class _DxfReader:
         layer = e.dxf.get("layer", "0")
         if layer == "0" and of is not None:
             layer = of.layer
-        line, weight = e.dxf.get("linetype", "BYLAYER").lower(), int(e.dxf.get("lineweight", _WeightCode.BYLAYER))
-        of_layer = self.layers.get(layer.lower(), _EntityLook(layer, "continuous", _WeightCode.DEFAULT))
-        by_block = of if of is not None else _EntityLook(layer, "continuous", _WeightCode.DEFAULT)
+        line, weight = e.dxf.get("linetype", "BYLAYER").lower(), int(e.dxf.get("lineweight", BYLAYER))
+        of_layer = self.layers.get(layer.lower(), _EntityLook(layer, "continuous", DEFAULT))
+        by_block = of if of is not None else _EntityLook(layer, "continuous", DEFAULT)
         line = of_layer.linetype if line == "bylayer" else by_block.linetype if line == "byblock" else line
-        weight = of_layer.weight if weight == _WeightCode.BYLAYER else by_block.weight if weight == _WeightCode.BYBLOCK else weight
+        weight = of_layer.weight if weight == BYLAYER else by_block.weight if weight == BYBLOCK else weight
         return _EntityLook(layer, line, weight)
 
-    def _fine(self, parts: Iterator[DXFEntity]) -> float:
+    def _fine(self, parts: Iterator[Any]) -> float:
         """Sagitta for flattening, from the approximate size of the drawing."""
         z = []
         keys = {"LINE": ("start", "end"), "CIRCLE": ("center",), "ARC": ("center",), "TEXT": ("insert",), "MTEXT": ("insert",)}
         for e in parts:
-            for key in keys.get(e.dxftype(), ()):
-                p = e.dxf.get(key)
-                z += [] if p is None else [complex(p.x, p.y)]
-            if e.dxftype() == "LWPOLYLINE" and len(e):  # type: ignore[arg-type]
-                z.extend(complex(x, y) for x, y, *_ in e[:2])  # type: ignore[index]
+            at = [e.dxf.get(key) for key in keys.get(e.dxftype(), ())]
+            z += [complex(p[0], p[1]) for p in (e[:2] if e.dxftype() == "LWPOLYLINE" else at) if p is not None]
         p = np.array([at for at in z if _somewhere(np.array([at]))])
         if len(p) < 2:
             return 0.005
@@ -453,7 +418,8 @@ class _DxfReader:
         """Centre lines of a primitive, curves in chords."""
         if kind in SILENT:
             return
-        if kind in UNREAD or _faceted(e, kind):
+        # A surface of facets is no line.
+        if kind in UNREAD or kind == "POLYFACE" or (kind == "POLYLINE" and not (e.is_2d_polyline or e.is_3d_polyline)):
             self.unread[kind] += 1
         elif kind == "LINE":
             yield self._seen([e.dxf.start, e.dxf.end])
@@ -485,22 +451,12 @@ class _DxfReader:
         return _xy(vertices)
 
 
-def _faceted(e: Any, kind: str) -> bool:
-    """Whether an entity is a surface of facets rather than a line."""
-    return kind == "POLYFACE" or (kind == "POLYLINE" and not (e.is_2d_polyline or e.is_3d_polyline))
-
-
 def _with_arcs(e: Any, kind: str) -> list[Any]:
     """The lines and arcs of a plane polyline; nothing where it has no arcs."""
     if kind != "LWPOLYLINE" and not (kind == "POLYLINE" and e.is_2d_polyline):
         return []
     parts = list(e.virtual_entities())
     return parts if any(part.dxftype() == "ARC" for part in parts) else []
-
-
-def _geometry(e: Any) -> str:
-    """Name of the block a dimension or a table is drawn by, if it has one."""
-    return str(e.dxf.get("geometry", "") or "") if e.dxf.is_supported("geometry") else ""
 
 
 def _extent(e: Any, kind: str) -> float:
@@ -522,8 +478,7 @@ def _somewhere(z: Points) -> bool:
 
 def _open_ended(z: Points) -> Points:
     """An outline without repeated points, not closed."""
-    keep = np.abs(z - np.roll(z, 1)) > 1e-9 * (1 + np.abs(z).max(initial=0.0))
-    return np.asarray(z[keep])
+    return np.asarray(z[np.abs(z - np.roll(z, 1)) > 1e-9 * (1 + np.abs(z).max(initial=0.0))])
 
 
 def _text(e: Any, n: int, encoding: str) -> Iterator[Writing]:
@@ -570,14 +525,9 @@ def _hatch(e: Any, fine: float) -> tuple[list[Points], list[Points]]:
     outlines = [_xy(p.flattening(fine, segments=4)) for p in path.from_hatch(e)]
     if e.has_solid_fill or e.has_gradient_data:
         return [], outlines
-    lines = []
-    try:
-        for k, (a, b) in enumerate(hatching.hatch_entity(e)):
-            if k > MOST_HATCH:
-                break
-            lines.append(np.array([complex(a.x, a.y), complex(b.x, b.y)]))
-    except hatching.HatchingError:
-        pass
+    lines: list[Points] = []
+    with suppress(hatching.HatchingError):
+        lines.extend(_xy(ends) for ends in islice(hatching.hatch_entity(e), MOST_HATCH))
     return lines, outlines
 
 
@@ -585,8 +535,7 @@ def _wide(e: Any, kind: str) -> Iterator[Points]:
     """Outlines of tapering segments of a polyline, by which arrow heads are drawn."""
     if kind != "LWPOLYLINE":
         return
-    rows = e.get_points("xyse")
-    for (x, y, start, end), (x1, y1, _, _) in pairwise(rows):
+    for (x, y, start, end), (x1, y1, _, _) in pairwise(e.get_points("xyse")):
         a, b = complex(x, y), complex(x1, y1)
         if abs(start - end) > 1e-9 and a != b:
             n = 1j * (b - a) / abs(b - a) / 2
@@ -609,9 +558,7 @@ def _breadth(e: Any, kind: str) -> float:
 
 def _pattern(line: Any) -> Pattern:
     """Class of a line type."""
-    if line.pattern_tags.is_complex_type():
-        return "other"
-    return of_dashes(_dashes(line))
+    return "other" if line.pattern_tags.is_complex_type() else of_dashes(_dashes(line))
 
 
 def _dashes(line: Any) -> list[float]:

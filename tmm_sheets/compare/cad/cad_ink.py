@@ -59,10 +59,8 @@ def of_strokes(strokes: Sequence[Interval], whole: float) -> Pattern | None:
 
 
 def _of_dots(dots: int) -> Pattern:
-    if dots > 2:
-        return "other"
-    names: tuple[Pattern, ...] = ("dashed", "dash-dot", "dash-two-dots")
-    return names[dots]
+    names: tuple[Pattern, ...] = ("dashed", "dash-dot", "dash-two-dots", "other")
+    return names[min(dots, 3)]
 
 
 class Entity(NamedTuple):
@@ -117,6 +115,17 @@ class Area(NamedTuple):
     solid: bool = True
 
 
+POINTED = 1.3
+"""How many times as far from the middle as the other corners a tip is: a dot has none."""
+
+
+def pointed(z: Points) -> complex | None:
+    """The way from the middle of an area to its tip; None where it has none: it is a dot, not a head."""
+    from_middle = z - z.mean()
+    far = complex(from_middle[np.abs(from_middle).argmax()])
+    return far if abs(far) > POINTED * np.median(np.abs(from_middle)) else None
+
+
 class Writing(NamedTuple):
     """A text: ``at`` is roughly its middle, ``width`` is estimated; ``angle`` rad."""
 
@@ -138,11 +147,6 @@ class DrawingSpace:
     writings: tuple[Writing, ...]
     entities: tuple[Entity, ...]
     paper: bool = False
-
-    @property
-    def empty(self) -> bool:
-        """Whether there is nothing to compare."""
-        return not self.strokes
 
     @cached_property
     def lines(self) -> KnownLines:

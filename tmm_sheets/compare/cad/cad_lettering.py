@@ -16,9 +16,9 @@ from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_comparison import ELSEWHERE, CadFinding, Comparison
 from tmm_sheets.compare.cad.cad_ink import Writing, normal
 from tmm_sheets.compare.cad.line_fit import ONE_PLACE, KnownLines, Left, Overlaps, lines, overlaps, union
-from tmm_sheets.compare.elements import Element, grown
+from tmm_sheets.compare.elements import Element, grouped, grown
 from tmm_sheets.drawing.ink import letters
-from tmm_sheets.drawing.marks import Points, Text
+from tmm_sheets.drawing.marks import Text
 
 SIZES = 1.2
 """How many times as high as another a text of the same size may be."""
@@ -68,9 +68,7 @@ class _Reading:
 
     def alike(self, sizes: float = inf) -> None:
         """The same text near by, the nearest pairs first; of two heights none is more than ``sizes`` times the other."""
-        by_meaning: dict[str, list[int]] = {}
-        for k, w in enumerate(self.writings):
-            by_meaning.setdefault(meant(w.text), []).append(k)
+        by_meaning = grouped(range(len(self.writings)), lambda k: meant(self.writings[k].text))
         pairs = [(_beyond(want, self.writings[k]), n, k) for n, want in enumerate(self.wanted)
                  for k in by_meaning.get(meant(want.text), ())
                  if n not in self.found and (sizes == inf or 1 / sizes <= self.writings[k].height / want.height <= sizes)]
@@ -158,8 +156,7 @@ class _Reading:
 
     def _about(self, want: Element, reach: float = 5.0) -> list[int]:
         """Texts whose middle is not far from the rectangle."""
-        size = abs(complex(want.points[2] - want.points[0])) / 2
-        return np.flatnonzero(np.abs(self.at - want.middle) < size + reach).tolist()
+        return np.flatnonzero(np.abs(self.at - want.middle) < abs(want.points[2] - want.points[0]) / 2 + reach).tolist()
 
 
 def _but(near: list[int], strangers: int) -> Iterator[list[int]]:
@@ -232,8 +229,8 @@ def lettering(state: Comparison) -> None:
             shift = complex(np.mean([state.space.writings[i].at for i in answer.writings])) - wanted[k].middle
             state.found[n] = state.finding(n, 0.0, None, shift=shift, entities=entities)
         else:
-            said = codes.SAYS(found=answer.says, wanted=state.elements[n].text)
-            state.found[n] = replace(state.finding(n, 4 * state.tolerance, said, entities=entities), says=answer.says)
+            other = state.finding(n, 4 * state.tolerance, codes.SAYS(found=answer.says, wanted=wanted[k].text), entities=entities)
+            state.found[n] = replace(other, says=answer.says)
         _bars(state, n)
         state.lettered.append(grown(wanted[k].points, 0.8))
     _strokes_of_letters(state, [n for k, n in enumerate(numbers) if k not in got])
@@ -257,11 +254,8 @@ def _bars(state: Comparison, n: int) -> None:
 
 def _strokes_of_letters(state: Comparison, rest: Sequence[int]) -> None:
     """Find lettering that is drawn with lines, letter by letter."""
-    strokes, owner = [], []
-    for n in rest:
-        for stroke in _letters(state, n):
-            strokes.append(stroke)
-            owner.append(n)
+    drawn = [(n, stroke) for n in rest for mark in state.elements[n].marks if isinstance(mark, Text) for stroke in letters(mark)]
+    owner, strokes = [n for n, _ in drawn], [stroke for _, stroke in drawn]
     ours = lines(strokes)
     near = overlaps(ours, state.theirs, max(state.tolerance, 0.25))
     covered = _covered(near, ours, len(strokes))
@@ -285,15 +279,7 @@ def _strokes_of_letters(state: Comparison, rest: Sequence[int]) -> None:
             state.found[n] = _other_letters(state, n)
             state.lettered.append(grown(want.points, 0.8))
         else:
-            said = codes.TEXT_MISSING(text=state.elements[n].text)
-            state.found[n] = state.finding(n, 2 * state.tolerance, said, missing=True)
-
-
-def _letters(state: Comparison, n: int) -> Iterator[Points]:
-    """The strokes of a text's letters."""
-    for mark in state.elements[n].marks:
-        if isinstance(mark, Text):
-            yield from letters(mark)
+            state.found[n] = state.finding(n, 2 * state.tolerance, codes.TEXT_MISSING(text=want.text), missing=True)
 
 
 def strange_ink(state: Comparison, rest: Sequence[Left]) -> None:

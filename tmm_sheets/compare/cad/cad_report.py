@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import radians
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import cad_extras
-from tmm_sheets.compare.cad.cad_comparison import CadFinding, CadOutcome, ExtraStroke, LookFinding
+from tmm_sheets.compare.cad.cad_comparison import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
 from tmm_sheets.compare.cad.registration import Layout, Registration
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built, told_view
@@ -23,7 +22,11 @@ from tmm_sheets.compare.elements import Element, ElementView, drawn
 from tmm_sheets.compare.findings import (
     FindingRecord,
     Report,
+    StoryPicture,
+    StoryTable,
+    ToldMistake,
     called,
+    clipped,
     millimetres,
     of_element,
     place,
@@ -33,7 +36,6 @@ from tmm_sheets.compare.findings import (
     worst,
 )
 from tmm_sheets.compare.placing import moved
-from tmm_sheets.compare.story import StoryPicture, StoryTable, ToldMistake, clipped
 from tmm_sheets.drawing.marks import Role
 from tmm_sheets.numbers import told
 from tmm_sheets.words import tell, tell_n
@@ -82,10 +84,7 @@ class ExaminedDrawing:
 
 def gone(outcome: CadOutcome) -> set[ElementView]:
     """Views that are missing from the drawing."""
-    by_view: dict[ElementView, list[CadFinding]] = {}
-    for f in outcome.findings:
-        by_view.setdefault(f.element.view, []).append(f)
-    return {v for v, found in by_view.items() if _is_gone(found)}
+    return {v for v, found in outcome.by_view.items() if _is_gone(found)}
 
 
 def _is_gone(found: Sequence[CadFinding]) -> bool:
@@ -98,15 +97,7 @@ def _is_gone(found: Sequence[CadFinding]) -> bool:
 
 def tables_and_texts(outcome: CadOutcome) -> set[ElementView]:
     """Views that have no shape: a student may have them in another form, so that they are not found, or leave them out."""
-    views = {f.element.view for f in outcome.findings}
-    return views - {f.element.view for f in outcome.findings if f.element.role in SHAPES}
-
-
-def _not_as_ours(lost: set[ElementView]) -> list[str]:
-    """What is told of tables and texts that are not found: one line for all of them."""
-    said = tell("not found as on the sheet, of tables, texts and details: {views}")
-    named = ", ".join(tell('"{view}"').format(view=v.name) for v in sorted(lost, key=lambda v: v.n))
-    return [said.format(views=named)] if lost else []
+    return {v for v, found in outcome.by_view.items() if not any(f.element.role in SHAPES for f in found)}
 
 
 def _found_by(entities: Sequence[Entity]) -> str:
@@ -191,7 +182,9 @@ def report(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> Repo
     return reported(
         "cad", name, laid.known.n, path, (tolerance, _summary(found, set(lost), records)), records, start,
         _mistakes(found, set(lost)), [*_tables(found, set(lost))], _unjudged(found, set(lost)), found.notes,
-        [_unclaimed(k, x) for k, x in enumerate(outcome.extras, 1)],
+        [{"kind": x.kind, "length_mm": round(x.length, 3), "at_mm": point(x.at), "where": str(x.entity), "number": k,
+          "verdict": x.verdict, "count": x.count, "text": x.text, "entity": x.entity.tree}
+         for k, x in enumerate(outcome.extras, 1)],
         {"missing_views": [v.name for v in lost], "missing_tables": [v.name for v in lost if v in beside],
          "not_drawn": sum(r.remark.code == "not-drawn" for r in records)},
         drawing=path.name, space=laid.space.name, tolerance=pencil,
@@ -200,7 +193,7 @@ def report(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> Repo
         views=[{"view": v.name, "share": round(s, 4), **(
             {"shift": point(complex(places.moves[v](v.box.centre)) - v.box.centre), "size": round(places.moves[v].scale, 6)}
             if v in places.moves else {})} for v, s in places.share.items()],
-        not_drawn=[{"view": x.view.name, "kind": x.kind, "count": x.count} for x in outcome.absent])
+        not_drawn=[{"view": view.name, "kind": kind, "count": n} for view, kind, n in outcome.absent])
 
 
 def _records(found: ExaminedDrawing, lost: Sequence[ElementView], tables: Container[ElementView],
@@ -212,16 +205,14 @@ def _records(found: ExaminedDrawing, lost: Sequence[ElementView], tables: Contai
     missing = {v: FindingRecord((codes.TABLE_MISSING(views=v.name) if v in tables else codes.VIEW_MISSING(view=v.name)),
                                 "not-judged", v.name, whole=True) for v in lost}
     mistakes = [*whole, *built.values(), *missing.values()]
-    start = [r for r in mistakes if r.follows is None]
-    return [*mistakes, *map(_look, found.outcome.looks),
-            *(_record(found, f, _follows(f, built, missing), pencil) for f in found.outcome.findings)], start
-
-
-def _follows(f: CadFinding, built: Mapping[ElementView, FindingRecord], missing: Mapping[ElementView, FindingRecord]) -> (
-        FindingRecord | None):
-    """What a finding on an element follows from."""
-    mistake = built.get(f.element.view) if f.follows else None
-    return missing.get(f.element.view) or (mistake and (mistake.follows or mistake))
+    looks = (FindingRecord(look.remark, look.verdict, look.view.name if look.view is not None else "", beside={
+        "styles": list(look.styles), "numbers": list(look.elements), "entities": [e.tree for e in look.entities]})
+        for look in found.outcome.looks)
+    # What a mistake leads on to follows from where that was made first.
+    reasons = {v: r.follows or r for v, r in built.items()}
+    elements = (_record(found, f, missing.get(f.element.view) or (reasons.get(f.element.view) if f.follows else None), pencil)
+                for f in found.outcome.findings)
+    return [*mistakes, *looks, *elements], [r for r in mistakes if r.follows is None]
 
 
 def _record(found: ExaminedDrawing, f: CadFinding, follows: FindingRecord | None, pencil: float) -> FindingRecord:
@@ -233,30 +224,12 @@ def _record(found: ExaminedDrawing, f: CadFinding, follows: FindingRecord | None
     beside = {"missing": True} if f.missing else {}
     return of_element(f, f.verdict or "not-judged", shift=f.shift, turn=None if f.turn is None else radians(f.turn),
                       growth=f.size / own if f.size is not None and own else None, tolerance=pencil, follows=follows,
-                      beside={**beside, "entities": _entities(found, f.entities)})
-
-
-def _look(look: LookFinding) -> FindingRecord:
-    """What is listed of lines of another type or width."""
-    return FindingRecord(look.remark, look.verdict, look.view.name if look.view is not None else "", beside={
-        "styles": list(look.styles), "numbers": list(look.elements), "entities": [e.tree for e in look.entities]})
-
-
-def _unclaimed(number: int, x: ExtraStroke) -> dict[str, Any]:
-    return {"kind": x.kind, "length_mm": round(x.length, 3), "at_mm": point(x.at), "where": str(x.entity), "number": number,
-            "verdict": x.verdict, "count": x.count, "text": x.text, "entity": x.entity.tree}
-
-
-def _entities(found: ExaminedDrawing, numbers: Iterable[int]) -> list[dict[str, str]]:
-    return [found.laid.space.entities[k].tree for k in numbers]
+                      beside={**beside, "entities": [found.laid.space.entities[k].tree for k in f.entities]})
 
 
 def _mistakes(found: ExaminedDrawing, lost: set[ElementView]) -> list[ToldMistake]:
     """What is wrong, view by view: those built on a wrong step first, then those with the most red."""
-    of_view: dict[ElementView, list[CadFinding]] = {}
-    for f in worst(found.outcome.findings):
-        if f.element.view not in lost:
-            of_view.setdefault(f.element.view, []).append(f)
+    of_view = {v: bad for v, some in found.outcome.by_view.items() if v not in lost and (bad := worst(some))}
     first: dict[str, ElementView] = {}
     for v, built in found.built.items():  # in the order of drawing
         first.setdefault(built.said(), v)
@@ -266,11 +239,10 @@ def _mistakes(found: ExaminedDrawing, lost: set[ElementView]) -> list[ToldMistak
             return False, list(found.built).index(v), 0
         return True, -sum(f.verdict == "red" for f in of_view[v]), v.n
 
-    order = sorted(of_view, key=place)
-    one_by_one = [_mistake(found, v, of_view[v], first.get(found.built[v].said()) if v in found.built else None) for v in order]
     whole = [ToldMistake(tell("the whole drawing"), built_otherwise(key).said(), "red", named=True)
              for key in filter(None, (found.mirrored,))]
-    return [*whole, *one_by_one]
+    return whole + [_mistake(found, v, of_view[v], first.get(found.built[v].said()) if v in found.built else None)
+                    for v in sorted(of_view, key=place)]
 
 
 def _mistake(found: ExaminedDrawing, view: ElementView, bad: Sequence[CadFinding],
@@ -306,22 +278,20 @@ def _picture(found: ExaminedDrawing, view: ElementView, bad: Sequence[CadFinding
     after = [f for f in lines if f.follows and f.element.name]
     dots = [f for f in after if f.element.kind == "circle"]
     places += [(f.at, 0.0, f.element.name) for f in dots or after]
-    picture = StoryPicture(ours, (), tuple(wrong), tuple(places))
-    box = picture.box
-    theirs = clipped([s.points for s in found.space.strokes], box)
-    return StoryPicture(ours, theirs, clipped(wrong, box), tuple(places))
+    box = StoryPicture(ours, (), tuple(wrong), tuple(places)).box
+    return StoryPicture(ours, clipped([s.points for s in found.space.strokes], box), clipped(wrong, box), tuple(places))
 
 
 def _unjudged(found: ExaminedDrawing, lost: set[ElementView]) -> list[str]:
     """What could not be judged, and why."""
     beside = tables_and_texts(found.outcome)
-    out = [codes.VIEW_MISSING(view=v.name).said()
-           for v in sorted(lost - beside, key=lambda v: v.n)]
-    out += _not_as_ours(lost & beside)
+    out = [codes.VIEW_MISSING(view=v.name).said() for v in sorted(lost - beside, key=lambda v: v.n)]
+    if tables := sorted(lost & beside, key=lambda v: v.n):
+        out.append(codes.TABLE_MISSING(views=", ".join(tell('"{view}"').format(view=v.name) for v in tables)).said())
     by_view: dict[str, list[str]] = {}
-    for x in found.outcome.absent:
-        if x.view not in lost:
-            by_view.setdefault(x.view.name, []).append(cad_extras.said_absent(x.kind, x.count))
+    for view, kind, n in found.outcome.absent:
+        if view not in lost:
+            by_view.setdefault(view.name, []).append(tell_n(*cad_extras.KINDS[kind], n).format(n=n))
     out += [tell('view "{view}": not drawn: {what}').format(view=name, what=", ".join(what)) for name, what in by_view.items()]
     skipped = Counter(f.what for f in found.outcome.findings if f.verdict is None and not f.absent and f.element.view not in lost)
     out += [tell("not compared: {what} ({n})").format(n=n, what=what) for what, n in skipped.items()]

@@ -407,10 +407,7 @@ def runs(rest: KnownLines, gap: float) -> list[OverlapRun]:
         return []
     a, b = rest.a[n], rest.b[n]
     u = (b - a) / np.abs(b - a)
-    import shapely
-
-    tree = shapely.STRtree(shapes(a, b))
-    i, j = tree.query(shapes(a, b), predicate="dwithin", distance=gap)
+    i, j = KnownLines(a, b, n).tree.query(shapes(a, b), predicate="dwithin", distance=gap)
     both = i < j
     i, j = i[both], j[both]
     c, d = (a[j] - a[i]) * np.conj(u[i]), (b[j] - a[i]) * np.conj(u[i])

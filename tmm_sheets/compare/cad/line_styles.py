@@ -201,8 +201,7 @@ def _wrong_widths(state: Comparison, ink: ByElement) -> tuple[list[LookFinding],
             return low <= _wide(entity) <= high
 
         if e.style in BROAD | THIN and (wrong := _wrong(state, n, rows, fits)):
-            longest = max(wrong, key=lambda row: row.b - row.a)
-            widths.setdefault((e.view, e.style), {})[n] = _wide(longest.entity)
+            widths.setdefault((e.view, e.style), {})[n] = _wide(max(wrong, key=lambda row: row.b - row.a).entity)
     return [_look(state, ink, view, style, _said(style, list(found.values()), s), list(found))
             for (view, style), found in widths.items()], []
 

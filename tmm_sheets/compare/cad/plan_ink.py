@@ -17,8 +17,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from tmm_sheets.compare.cad.cad_ink import DrawingSpace
-from tmm_sheets.compare.cad.line_fit import MOST, hanging_together, shapes
+from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity, pointed
+from tmm_sheets.compare.cad.line_fit import MOST, KnownLines, hanging_together, shapes
+from tmm_sheets.compare.elements import grouped
 from tmm_sheets.drawing.marks import Points
 
 Floats = NDArray[np.float64]
@@ -114,6 +115,7 @@ class PlanInk:
     heads : tips and directions of arrow heads
     texts : lettering; ``turn`` how most of it is turned, rad, NaN without any
     scale : mm per unit of the drawing; ``curves`` number of strokes that are bent and not looked at
+    look : by stroke the number of its layer, line type and width together
     """
 
     def __init__(self, space: DrawingSpace, unit: float | None, scaled: bool = False) -> None:
@@ -132,7 +134,7 @@ class PlanInk:
                 self.curves += 1
                 joints += _joint(z)
             elif len(z) > 3 and abs(z[0] - z[-1]) < 0.05 and max(np.ptp(z.real), np.ptp(z.imag)) < MAX_SYMBOL_MM:
-                small.append(z)
+                small.append(z[:-1])
             else:
                 ends += [x for pair in zip(z[:-1].tolist(), z[1:].tolist(), strict=True) for x in pair]
                 stroke += [n] * (len(z) - 1)
@@ -143,7 +145,8 @@ class PlanInk:
         s2, of = s2[keep], of[keep]
         filled = [*(a.points * self.scale for a in space.areas if a.solid and space.entities[a.entity].kind not in NOT_OF_PLANS),
                   *small]
-        heads = [h for z in filled if (h := _triangle_head(z))]
+        heads = [(complex(z.mean()) + far, far / abs(far)) for z in filled
+                 if (far := pointed(z)) is not None and abs(far) < MAX_HEAD_MM]
         symbols = _supports(s2)
         s2, of = np.delete(s2, symbols, axis=0), np.delete(of, symbols)
         barbs, more = _open_heads(s2)
@@ -152,8 +155,10 @@ class PlanInk:
         self.heads: list[tuple[complex, complex]] = heads + more
         turns = Counter(round(float(np.degrees(t.angle)) % 360, 1) for t in self.texts)
         self.turn = float(np.radians(turns.most_common(1)[0][0])) if turns else float("nan")
-        self.auxiliary = _auxiliary(space, self.stroke)
-        self.look = _looks(space, self.stroke)
+        entities = [space.entities[space.strokes[n].entity] for n in self.stroke.tolist()]
+        self.auxiliary = _auxiliary(entities)
+        numbers: dict[tuple[str, str, float | None], int] = {}
+        self.look = np.array([numbers.setdefault((e.layer, e.pattern, e.width), len(numbers)) for e in entities], dtype=np.intp)
 
     def freed(self, mirrored: bool) -> PlanInk:
         """The drawing as if its lettering told no turn; ``mirrored``: reflected in the x axis, its lettering still read."""
@@ -169,10 +174,8 @@ class PlanInk:
         """Some strokes by the figures they hang together in."""
         if not len(some):
             return []
-        import shapely
-
-        lines = shapes(self.a[some], self.b[some])
-        i, j = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=MAX_GAP_MM)
+        lines = KnownLines(self.a[some], self.b[some], some)
+        i, j = lines.tree.query(shapes(lines.a, lines.b), predicate="dwithin", distance=MAX_GAP_MM)
         return [some[n] for n in hanging_together(len(some), i, j)]
 
     def is_frame(self, some: Numbers) -> bool:
@@ -201,29 +204,22 @@ class PlanInk:
 
 
 def _lettering(space: DrawingSpace, scale: float) -> list[Lettering]:
-    by_entity: dict[int, list[int]] = {}
-    for n, w in enumerate(space.writings):
-        by_entity.setdefault(w.entity, []).append(n)
-    return [Lettering(" ".join(space.writings[n].text.strip() for n in some), space.writings[some[0]].at * scale,
-                      space.writings[some[0]].angle) for some in by_entity.values()]
+    return [Lettering(" ".join(w.text.strip() for w in some), some[0].at * scale, some[0].angle)
+            for some in grouped(space.writings, lambda w: w.entity).values()]
 
 
 def _scale(space: DrawingSpace, unit: float | None) -> float:
     """Millimetres of a unit of the drawing: the declared unit, unless the lettering would be too low or too high in it."""
     units = list(dict.fromkeys((1.0 if space.paper else unit or 1.0, *UNITS_MM)))
     if not space.writings:
-        size = max(float(np.ptp(z)) for z in _extent(space)) if space.strokes else 1.0
+        z = np.concatenate([s.points for s in space.strokes] or [np.array([0, 1 + 1j])])
+        size = max(float(np.ptp(z.real)), float(np.ptp(z.imag)))
         return next((u for u in units if 40 < u * size < 5000), 300 / max(size, 1e-9))
     high = float(np.median([w.height for w in space.writings])) or 1.0
     if LETTERS_MM[0] <= units[0] * high <= LETTERS_MM[1]:
         return units[0]
     best = min(units, key=lambda u: abs(np.log(u * high / LETTER_MM)))
     return best if LETTERS_MM[0] / 1.5 <= best * high <= 1.5 * LETTERS_MM[1] else LETTER_MM / high
-
-
-def _extent(space: DrawingSpace) -> tuple[Floats, Floats]:
-    z = np.concatenate([s.points for s in space.strokes])
-    return z.real, z.imag
 
 
 def _is_bent(z: Points) -> bool:
@@ -237,13 +233,9 @@ def _is_bent(z: Points) -> bool:
 
 def _each_once(s: NDArray[np.complex128]) -> Numbers:
     """Numbers of the strokes that have a length, coincident ones once."""
-    seen, keep = set(), []
-    for n, (a, b) in enumerate(np.round(s, 2).tolist()):
-        key = frozenset((a, b))
-        if len(key) == 2 and key not in seen:
-            seen.add(key)
-            keep.append(n)
-    return np.array(keep, dtype=np.intp)
+    ends = np.sort(np.round(s, 2) + 0.0, axis=1)
+    first = np.sort(np.unique(ends, axis=0, return_index=True)[1])
+    return np.asarray(first[ends[first, 0] != ends[first, 1]])
 
 
 def _close(z: Points, within: float) -> tuple[Numbers, Numbers]:
@@ -287,18 +279,10 @@ def _supports(s: NDArray[np.complex128]) -> list[int]:
     d = s[:, 1] - s[:, 0]
     size = np.abs(d)
     short = np.flatnonzero(size < MAX_HATCH_MM)
-    middle = (s[:, 0] + s[:, 1]) / 2
-    hatch: set[int] = set()
-    for i in short.tolist():
-        if i not in hatch:
-            alike = short[(np.abs((d[short] / d[i]).imag) < 0.05) & (np.abs(size[short] / size[i] - 1) < 0.1)]
-            row = {i}
-            while True:
-                near = [int(j) for j in alike if int(j) not in row and np.abs(middle[j] - middle[list(row)]).min() < MAX_HATCH_MM]
-                if not near:
-                    break
-                row |= set(near)
-            hatch |= row if len(row) > 3 else set()
+    i, j = _close((s[short, 0] + s[short, 1]) / 2, MAX_HATCH_MM)
+    alike = (np.abs((d[short[i]] / d[short[j]]).imag) < 0.05) & (np.abs(size[short[i]] / size[short[j]] - 1) < 0.1)
+    rows = hanging_together(len(short), i[alike], j[alike])
+    hatch = {n for row in rows if len(row) > 3 for n in short[row].tolist()}
     if not hatch:
         return []
     ends = np.concatenate((s[list(hatch), 0], s[list(hatch), 1]))
@@ -308,17 +292,6 @@ def _supports(s: NDArray[np.complex128]) -> list[int]:
     w = (np.concatenate((s[:, 0], s[:, 1]))[:, None] - s[list(ground), 0]) / d[list(ground)]
     stands = ((np.abs(w.imag) * size[list(ground)] < 0.3) & (w.real > -0.01) & (w.real < 1.01)).any(1).reshape(2, -1).any(0)
     return sorted(hatch | ground | set(np.flatnonzero(stands & (size < SUPPORT_MM)).tolist()))
-
-
-def _triangle_head(z: Points) -> tuple[complex, complex] | None:
-    """Tip and direction of a small triangle that is longer than wide."""
-    corners = [p for i, p in enumerate(z.tolist()) if all(abs(p - q) > 0.1 for q in z[:i].tolist())]
-    if len(corners) != 3 or max(abs(p - sum(corners) / 3) for p in corners) > MAX_HEAD_MM:
-        return None
-    k = int(np.argmax([min(abs(corners[i] - corners[i - 1]), abs(corners[i] - corners[i - 2])) for i in range(3)]))
-    back = (corners[k - 1] + corners[k - 2]) / 2
-    size = abs(corners[k] - back)
-    return (corners[k], (corners[k] - back) / size) if size > 0.8 * abs(corners[k - 1] - corners[k - 2]) else None
 
 
 def _open_heads(s: NDArray[np.complex128]) -> tuple[list[int], list[tuple[complex, complex]]]:
@@ -354,22 +327,14 @@ def _open_heads(s: NDArray[np.complex128]) -> tuple[list[int], list[tuple[comple
     return sorted(used), heads
 
 
-def _auxiliary(space: DrawingSpace, stroke: Numbers) -> NDArray[np.bool_]:
-    """By stroke whether its look is that of construction lines: not continuous, or thin where others are twice as wide."""
-    of = [space.entities[space.strokes[n].entity] for n in stroke.tolist()]
+def _auxiliary(of: Sequence[Entity]) -> NDArray[np.bool_]:
+    """By stroke's entity whether its look is that of construction lines: not continuous, or thin where others are twice as wide."""
     widths = np.array([np.nan if e.width is None else e.width for e in of])
     widest = np.nanmax(widths) if np.isfinite(widths).any() else np.nan
     thin = np.nan_to_num(widths, nan=np.inf) <= 0.6 * widest if np.isfinite(widest) else np.zeros(len(of), bool)
     dashed = np.array([e.pattern != "continuous" for e in of], dtype=bool)
     made = thin | dashed
     return made if made.mean() < 0.7 else np.zeros(len(of), bool)
-
-
-def _looks(space: DrawingSpace, stroke: Numbers) -> Numbers:
-    """By stroke the number of its look: layer, line type, width."""
-    seen: dict[tuple[str, str, float | None], int] = {}
-    of = (space.entities[space.strokes[n].entity] for n in stroke.tolist())
-    return np.array([seen.setdefault((e.layer, e.pattern, e.width), len(seen)) for e in of], dtype=np.intp)
 
 
 def sample(a: Points, b: Points) -> tuple[Points, Points, Numbers]:

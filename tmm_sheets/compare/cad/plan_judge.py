@@ -30,14 +30,23 @@ from tmm_sheets.compare.cad.plan_ink import (
     PlanLines,
     reversed_heads,
 )
-from tmm_sheets.compare.cad.plan_views import PlanRecord, PlanTitle, PlanView, at, titles
+from tmm_sheets.compare.cad.plan_views import PlanRecord, PlanTitle, PlanView, titles
 from tmm_sheets.compare.codes import LINE_TOO_LONG, POINT_MOVED, Remark
-from tmm_sheets.compare.diagnosis.hypotheses import Change, Hypothesis, displaced, hypotheses, laid_off, of_other_positions, replay
+from tmm_sheets.compare.diagnosis.hypotheses import (
+    RARITY,
+    Change,
+    Hypothesis,
+    displaced,
+    hypotheses,
+    laid_off,
+    of_other_positions,
+    replay,
+)
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import letter_of
-from tmm_sheets.construction.step import Step, ordered
+from tmm_sheets.construction.step import Step, ordered, value_at
 
 # --- price of a hypothesis, mm of ink: by what must be assumed ---------------------------------------------------------------
 PRICES = {"step": 4.0, "step before": 6.0, "other position": 7.0, "length": 8.0, "point moved": 12.0}
@@ -175,21 +184,15 @@ class _Judge:
             beside = [f for f in left if self.ink.gap(claimed, f.strokes) < MAX_GAP_MM]
             left = [f for f in left if f not in beside]
             mine = np.concatenate([claimed, *(f.strokes for f in beside)])
-            out.append(self._judged(self.titles[n].text, name, ks, self._figure(mine, name)))
-        bare = [n for n in open_titles if all(v.title != self.titles[n].text for v in out)]
-        out += [self._without_ink(self.titles[n]) for n in bare]
-        none = []
-        untitled = sorted((f for f in left if f.ink > MIN_UNTITLED_MM and len(f.strokes) > 2), key=lambda f: -f.ink)
-        for f in untitled[:MAX_UNTITLED]:
-            v = self._untitled(f)
-            if v is not None:
-                out.append(v)
-            else:
-                none.append(f.strokes)
+            out.append(judge_view(self.record, self.titles[n].text, name, ks, self._figure(mine, name), self.ink.turn))
+        out += [self._without_ink(self.titles[n]) for n in open_titles if all(v.title != self.titles[n].text for v in out)]
+        untitled = sorted((f for f in left if f.ink > MIN_UNTITLED_MM and len(f.strokes) > 2), key=lambda f: -f.ink)[:MAX_UNTITLED]
+        judged = [self._untitled(f) for f in untitled]
+        out += [v for v in judged if v is not None]
         for v in out:
             if v.fit is not None and v.name != "positions" and v.kind in ("right", "mistake", "partly"):
                 v.reversed_heads = reversed_heads(self.ink, v.lines, v.fit)
-        return tuple(out), tuple(none)
+        return tuple(out), tuple(f.strokes for f, v in zip(untitled, judged, strict=True) if v is None)
 
     def _figures(self, some: Numbers) -> list[Numbers]:
         return [f for f in self.ink.figures(some) if len(f) <= MAX_STROKES]
@@ -230,12 +233,9 @@ class _Judge:
         d = (lines.heads - lines.tails)[[kind == MAIN for kind in lines.kinds]]
         flat = len(d) > 0 and bool((np.abs((d / d[np.abs(d).argmax()]).imag) < 0.02).all())
         # Any line fits a plan along one line: it is one only with a head.
-        sure = self._is_headed(figure) if flat else (fit.left <= LEFT_SHARE).sum() > 1
-        return [(ks, fit)] if fit.own > MIN_FIGURE_MM and sure else []
-
-    def _is_headed(self, figure: Figure) -> bool:
         tips = np.array([tip for tip, _ in self.ink.heads], dtype=complex)
-        return bool(len(tips) and (np.abs(figure.ends[:, None] - tips) < 2 * TOLERANCE_MM).any())
+        sure = (np.abs(figure.ends[:, None] - tips) < 2 * TOLERANCE_MM).any() if flat else (fit.left <= LEFT_SHARE).sum() > 1
+        return [(ks, fit)] if fit.own > MIN_FIGURE_MM and sure else []
 
     def _drawn_positions(self, figure: Figure, name: str, ks: tuple[int, ...]) -> tuple[int, ...]:
         """Of many positions those that are there by themselves, most of them at one place."""
@@ -254,7 +254,7 @@ class _Judge:
             near = sorted((f.away(title.at), k) for k, f in enumerate(rest) if f.ink > MIN_FIGURE_MM and len(f.strokes) > 1)
             for far, k in near[:NEAREST]:
                 for name, ks in [*self.record.choices(title, self.usual)][:2]:
-                    v = self._judged(title.text, name, ks, self._figure(rest[k].strokes, name))
+                    v = judge_view(self.record, title.text, name, ks, self._figure(rest[k].strokes, name), self.ink.turn)
                     if v.fit is not None:
                         known = v.kind in ("right", "mistake")
                         offers.append((not known, v.fit.price / max(v.fit.ink, 1.0) * known + far / FAR_MM, n, k, v))
@@ -281,11 +281,9 @@ class _Judge:
             fit = self._figure(figure.strokes, name).laid(self.record.view(name).lines(ks), self.ink.turn, 3)
             if fit is not None and fit.extra < 0.25 * fit.ink and (best is None or fit.price < best[0]):
                 best = fit.price, name, ks
-        return None if best is None else self._judged("", best[1], best[2], self._figure(figure.strokes, best[1]))
-
-    def _judged(self, title: str, name: str, ks: tuple[int, ...], figure: Figure) -> JudgedView:
-        """A view on its ink: as it should be, with a mistake, or not this plan."""
-        return judge_view(self.record, title, name, ks, figure, self.ink.turn)
+        if best is None:
+            return None
+        return judge_view(self.record, "", best[1], best[2], self._figure(figure.strokes, best[1]), self.ink.turn)
 
 
 def judge_view(record: PlanRecord, title: str, name: str, ks: tuple[int, ...], figure: Figure, turn: float,
@@ -303,7 +301,7 @@ def judge_view(record: PlanRecord, title: str, name: str, ks: tuple[int, ...], f
     found = search.best(usual)
     if found is not None:
         return _view(title, name, ks, view, "mistake", exact, found.lines, found.fit, figure, search.alike(found),
-                     found.second, search.tried)
+                     len(found.causes) > 1, search.tried)
     unlike = usual is None or usual.extra > UNLIKE * usual.ink
     return _view(title, name, ks, view, "unlike" if unlike else "partly", exact, exact, usual, figure, tried=search.tried)
 
@@ -320,10 +318,6 @@ class _Found:
     causes: tuple[Cause, ...]
     fit: Fit
     lines: PlanLines
-
-    @property
-    def second(self) -> bool:
-        return len(self.causes) > 1
 
 
 class _MistakeSearch:
@@ -360,7 +354,7 @@ class _MistakeSearch:
 
     def alike(self, found: _Found) -> tuple[Cause, ...]:
         """The causes found; of one alone all that draw the same, the cheapest first."""
-        if found.second:
+        if len(found.causes) > 1:
             return found.causes
         heads = found.fit.at(found.lines.heads)
         usual = [f for f in self._all if f.causes[0].mistake is not None or f.price <= found.price]
@@ -401,7 +395,7 @@ class _MistakeSearch:
                 key = (h.words, id(h.step), h.at, str(h.other))
                 if key not in seen:
                     seen.add(key)
-                    price = PRICES["step" if h.step.plan == self.name else "step before"] + h.rarity
+                    price = PRICES["step" if h.step.plan == self.name else "step before"] + RARITY.get(h.words, 0.0)
                     yield Cause(h.remark, h.step, h.changes, price, h)
             if self.name != "positions":
                 for h in of_other_positions(self.view.points, k, self.view.plan.labels):
@@ -412,7 +406,7 @@ class _MistakeSearch:
     def _moved(self, k: int, fit: Fit) -> Iterator[Cause]:
         """A point at an end of ink: along its line, so that a length is wrong, or anywhere."""
         for p in self.view.points:
-            if not any(isinstance(x, Step) for x in p.args) or not np.isfinite(was := at(p.value, k)):
+            if not any(isinstance(x, Step) for x in p.args) or not np.isfinite(was := complex(value_at(p, k))):
                 continue
             here = fit.origin + fit.scale * was
             ends = np.unique(np.round(self.figure.ends[np.abs(self.figure.ends - here) < MAX_MOVED_MM], 1))
@@ -427,7 +421,7 @@ class _MistakeSearch:
     def _longer(self, p: Step, was: complex, by: complex, k: int, fit: Fit) -> Iterator[Cause]:
         """A length laid off too long or too short, where the point stays on its line."""
         if p.rule in (rules.LAY_OFF, rules.ALONG) and isinstance(p.args[0], Step):
-            base = at(p.args[0].value, k)
+            base = complex(value_at(p.args[0], k))
             if abs(np.angle((was + by - base) / (was - base))) < 0.03:
                 times = abs(was + by - base) / abs(was - base)
                 off = (times - 1) * abs(was - base) * abs(fit.scale)

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.plan_ink import DRAWN_SHARE, MAIN, OTHERS, Fit
@@ -18,8 +19,18 @@ from tmm_sheets.compare.cad.plan_views import CLASSES
 from tmm_sheets.compare.codes import Remark, joined
 from tmm_sheets.compare.diagnosis.built_plan import SHOWN
 from tmm_sheets.compare.diagnosis.hypotheses import TOLD, built_otherwise
-from tmm_sheets.compare.findings import FindingRecord, Outcome, Report, millimetres, point, reported
-from tmm_sheets.compare.story import StoryPicture, StoryTable, ToldMistake, clipped
+from tmm_sheets.compare.findings import (
+    FindingRecord,
+    Outcome,
+    Report,
+    StoryPicture,
+    StoryTable,
+    ToldMistake,
+    clipped,
+    millimetres,
+    point,
+    reported,
+)
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
@@ -46,11 +57,8 @@ def plan_report(project: str, sheet: int, path: Path, space: DrawingSpace, judge
     """The report on a drawing of ``project``; ``space`` is the drawing in its own units, ``pencil`` the tolerance, mm."""
     views = [_of_view(v, pencil) for v in judged.views]
     start = [*_of_all(judged, views)]
-    first: dict[Remark, FindingRecord] = {}
-    for v in views:
-        if v.whole is not None and (v.whole.verdict == "red" or v.whole.remark.code == "view-missing"):
-            start.append(v.whole)
-            first.setdefault(v.whole.remark, v.whole)
+    start += [v.whole for v in views
+              if v.whole is not None and (v.whole.verdict == "red" or v.whole.remark.code == "view-missing")]
     records = [*(r for r in start), *(v.whole for v in views if v.whole is not None and v.whole not in start),
                *(r for v in views for r in v.lines.values())]
     extra = _unclaimed(space, judged)
@@ -93,9 +101,11 @@ def _of_view(v: JudgedView, pencil: float) -> _OfView:
     name = v.title or plan.title
     out = _OfView(v, name)
 
+    ends = v.fit.at(np.concatenate((v.lines.tails, v.lines.heads))) if v.fit is not None else v.lines.heads[:0]
+
     def whole(remark: Remark, verdict: Outcome, **beside: Any) -> FindingRecord:
         return FindingRecord(remark, verdict, name, plan.name, v.causes[0].step.path if v.causes else "", v.label, whole=True,
-                             at=_middle(v), beside=beside)
+                             at=Box.around(ends).centre if len(ends) else None, beside=beside)
 
     if v.kind == "bare":
         out.whole = whole(codes.NO_INK_UNDER_TITLE(view=name), "not-judged")
@@ -120,8 +130,7 @@ def _of_view(v: JudgedView, pencil: float) -> _OfView:
         if kind == OTHERS and not (v.fit.drawn[n] >= DRAWN_SHARE and n in off):
             continue
         z = v.fit.at(np.array([lines.tails[n], lines.heads[n]]))
-        name_of = v.view.pairs[int(lines.numbers[n]) % len(v.view.pairs)][3]
-        step = v.view.pairs[int(lines.numbers[n]) % len(v.view.pairs)][1]
+        _, step, _, name_of = v.view.pairs[int(lines.numbers[n]) % len(v.view.pairs)]
         k = v.positions[int(lines.numbers[n]) // len(v.view.pairs)]
         follows: FindingRecord | None = None
         verdict: Outcome = "green"
@@ -155,13 +164,6 @@ def _moved_lines(v: JudgedView) -> dict[int, float]:
         if off > SAME_MM:
             out[i] = off
     return out
-
-
-def _middle(v: JudgedView) -> complex | None:
-    if v.fit is None or not len(v.lines.heads):
-        return None
-    z = v.fit.at(np.concatenate((v.lines.tails, v.lines.heads)))
-    return complex(z.real.min() + z.real.max(), z.imag.min() + z.imag.max()) / 2
 
 
 def _of_all(judged: JudgedPlans, views: Sequence[_OfView]) -> Iterator[FindingRecord]:

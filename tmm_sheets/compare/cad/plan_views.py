@@ -17,7 +17,7 @@ from tmm_sheets.compare.elements import said
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import letter_of
-from tmm_sheets.construction.step import Plan, Step, asked_for
+from tmm_sheets.construction.step import Plan, Step, asked_for, value_at
 from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
@@ -78,19 +78,14 @@ class PlanView:
     def lines(self, ks: Sequence[int], value: Callable[[Step], Any] = lambda step: step.value) -> PlanLines:
         """Its lines at some positions, in the plan's unit, but those that cannot be drawn; number n is of pair n mod count."""
         with np.errstate(all="ignore"):
-            ends = np.array([[at(value(t), k), at(value(h), k)] for k in ks for t, h, _, _ in self.pairs]).reshape(-1, 2)
+            ends = np.array([[value_at(value(step), k) for step in pair[:2]] for k in ks for pair in self.pairs], dtype=complex)
+            ends = ends.reshape(-1, 2)
             size = np.abs(ends[:, 1] - ends[:, 0])
             n = np.flatnonzero(np.isfinite(ends).all(1) & (size > 0) & (size < 1e9))
-            guides = [(at(value(p), ks[0]), at(value(u), ks[0])) for p, u in self.guides]
+            guides = [(value_at(value(p), ks[0]), value_at(value(u), ks[0])) for p, u in self.guides]
         through, along = (np.array(x, dtype=complex) for x in (zip(*guides, strict=True) if guides else ((), ())))
         kinds = tuple(self.pairs[i % len(self.pairs)][2] for i in n.tolist())
         return PlanLines(ends[n, 0], ends[n, 1], kinds, n, through, along)
-
-
-def at(value: Any, k: int) -> complex:
-    """A step's value at a position."""
-    v = np.asarray(value)
-    return complex(v[k] if v.ndim else v)
 
 
 class PlanRecord:
@@ -173,7 +168,9 @@ def _of_vectors(plan: Plan) -> PlanView:
     order = [s for s in plan if s.rule.gives == "point"]
     pairs = []
     for g in plan.segments:
-        kind = CENTRES if "S" in g.symbol and not force else RESULTANTS if force and _sums_up(order, g.tail, g.head) else MAIN
+        # A side of a force polygon that is the sum of others joins points that do not follow one another.
+        sum_up = force and len(order) > 2 and abs(order.index(g.tail) - order.index(g.head)) not in (1, len(order) - 1)
+        kind = CENTRES if "S" in g.symbol and not force else RESULTANTS if sum_up else MAIN
         pairs.append((g.tail, g.head, kind, said(g.symbol)))
     if plan.pole:
         pole = plan[plan.pole]
@@ -186,8 +183,3 @@ def _of_vectors(plan: Plan) -> PlanView:
                     pairs.append((t.args[0], a, OTHERS, letter_of(t.args[0]) + letter_of(a)))
                     have.add((t.args[0], a))
     return PlanView(plan, tuple(pairs))
-
-
-def _sums_up(order: Sequence[Step], tail: Step, head: Step) -> bool:
-    """True of a side of a force polygon that is the sum of others."""
-    return len(order) > 2 and abs(order.index(tail) - order.index(head)) not in (1, len(order) - 1)

@@ -23,9 +23,8 @@ from tmm_sheets.compare.cad.line_fit import (
     refine,
     snapped,
 )
-from tmm_sheets.compare.elements import Element, ElementView, KnownSheet
-from tmm_sheets.compare.placing import Placing
-from tmm_sheets.compare.view_places import StatedViewPlace
+from tmm_sheets.compare.elements import Element, ElementView, KnownSheet, grouped
+from tmm_sheets.compare.placing import Placing, StatedViewPlace
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import decimal, told
 from tmm_sheets.words import marked, tell
@@ -45,20 +44,12 @@ class Layout:
     ----------
     moves : for views that are elsewhere, how to take them from our sheet to their places in the drawing laid over it
     share : share of the lines of each view that was found, 0 .. 1
-    said : what is told of the places that a file gives
-    elsewhere : views that were found where they were not expected
+    notes : where they are, in words, of those that a file gives or that were found where they were not expected
     """
 
     moves: Mapping[ElementView, Placing]
     share: Mapping[ElementView, float]
-    said: tuple[str, ...]
-    elsewhere: tuple[ElementView, ...]
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Where the views are, in words."""
-        there = tell('"{view}" stands {place}; compared there')
-        return (*self.said, *(there.format(view=v.name, place=_where(v, self.moves[v])) for v in self.elsewhere))
+    notes: tuple[str, ...]
 
 
 def line_points(elements: Sequence[Element]) -> Points:
@@ -80,28 +71,26 @@ def find(elements: Sequence[Element], space: DrawingSpace, given: Sequence[tuple
     BadInput
         If a place gives a scale factor for a view that has none of its own on the sheet.
     """
-    words: dict[str, list[complex]] = {}
-    for w in space.writings:
-        words.setdefault(meant(w.text), []).append(w.at)
+    words = {text: [w.at for w in some] for text, some in grouped(space.writings, lambda w: meant(w.text)).items()}
     views = {v: _SoughtView(v, [e for e in elements if e.view == v], space.lines, words)
              for v in dict.fromkeys(e.view for e in elements)}
     moves: dict[ElementView, Placing] = {}
-    said, elsewhere = [], []
+    notes = []
     for place, whole in given:
         v = place.view
         move, there = views[v].stated(place, whole)
         if there:
             moves[v] = move
-            said.append(tell('"{view}" stands {place}, as --views says').format(view=v.name, place=_where(v, move)))
+            notes.append(tell('"{view}" stands {place}, as --views says').format(view=v.name, place=_where(v, move)))
         else:
             told_not = tell('"{view}" is not where --views says: {share} % of its lines are there; it was looked for')
-            said.append(told_not.format(view=v.name, share=round(100 * views[v].inked(move))))
+            notes.append(told_not.format(view=v.name, share=round(100 * views[v].inked(move))))
     for v, view in views.items():
         if v.n and v not in moves and (found := view.elsewhere()) is not None:
             moves[v] = found
-            elsewhere.append(v)
+            notes.append(tell('"{view}" stands {place}; compared there').format(view=v.name, place=_where(v, found)))
     share = {v: view.inked(moves.get(v, Placing())) for v, view in views.items()}
-    return Layout(moves, share, tuple(said), tuple(elsewhere))
+    return Layout(moves, share, tuple(notes))
 
 
 class _SoughtView:
@@ -247,7 +236,8 @@ def _by_parts(known: Iterable[KnownSheet], ink: CadInk) -> Iterator[Registration
     for sheet in known:
         views = dict.fromkeys(e.view for e in sheet.elements if e.view.n)
         of_views = [_lines(e for e in sheet.elements if e.view == view) for view in views]
-        ours, long = (_together(some) for some in (of_views, [longest(of, 6) for of in of_views]))
+        ours, long = (KnownLines(*(np.concatenate(x) for x in zip(*((of.a, of.b, of.owner) for of in some), strict=True)))
+                      for some in (of_views, [longest(of, 6) for of in of_views]))
         for space in ink.spaces:
             for size in dict.fromkeys(base * ratio for base in (ink.unit or 1.0, 1.0) for ratio in RATIOS):
                 scale = Placing(complex(size))
@@ -263,10 +253,6 @@ def _by_parts(known: Iterable[KnownSheet], ink: CadInk) -> Iterator[Registration
 def _lines(some: Iterable[Element]) -> KnownLines:
     """What a draughtsman cannot omit or draw in another way."""
     return lines([e.points for e in some if e.kind not in ("text", "hatch", "fill")])
-
-
-def _together(some: Sequence[KnownLines]) -> KnownLines:
-    return KnownLines(*(np.concatenate(x) for x in zip(*((of.a, of.b, of.owner) for of in some), strict=True)))
 
 
 def _askew(space: DrawingSpace) -> float:
@@ -308,7 +294,9 @@ def _refined(laid: Registration, unit: float | None) -> Registration:
     """The placing refined: on all lines if most are in their places, else on the frame if there is one."""
     theirs, z, free = laid.space.lines, line_points(laid.known.elements), True
     if laid.share < SURE:
-        frame = _frame(laid.known.elements)
+        # The frame is the largest rectangle of main lines.
+        rectangles = (e for e in laid.known.elements if e.view.n == 0 and e.kind == "curve" and e.style == "main")
+        frame = lines([max(rectangles, key=lambda e: e.length).points]).points(2.0)
         if theirs.share(laid.placing.back(frame), HIT / laid.placing.scale) > 0.9:
             z = frame
         else:
@@ -316,12 +304,6 @@ def _refined(laid: Registration, unit: float | None) -> Registration:
     z = z[:: max(len(z) // 1500, 1)]
     placing = snapped(z, theirs, refine(z, theirs, laid.placing, free=free).placing, unit)
     return replace(laid, placing=placing)
-
-
-def _frame(found: Sequence[Element]) -> Points:
-    """Points along the frame, the largest rectangle of main lines."""
-    rectangles = [e for e in found if e.view.n == 0 and e.kind == "curve" and e.style == "main"]
-    return lines([max(rectangles, key=lambda e: e.length).points]).points(2.0)
 
 
 DRAWN_AT = {2.0: "1:2", 2.5: "1:2.5", 4.0: "1:4", 5.0: "1:5", 10.0: "1:10", 0.5: "2:1", 0.4: "2.5:1", 0.25: "4:1", 0.2: "5:1"}

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, FARTHEST, SIZE_OF_SYMBOL, CadFinding, Comparison
-from tmm_sheets.compare.cad.cad_ink import DrawingSpace
+from tmm_sheets.compare.cad.cad_ink import DrawingSpace, pointed
 from tmm_sheets.compare.cad.line_fit import ONE_PLACE, left, lines, overlaps, pieces
 from tmm_sheets.compare.codes import Number, Remark, joined
 from tmm_sheets.compare.findings import shifted, turned, verdict
@@ -22,8 +22,6 @@ from tmm_sheets.drawing.marks import Points
 
 LARGEST = 12.0
 """Greatest extent of a filled area that may be an arrow head, mm."""
-POINTED = 1.3
-"""How many times as far from the middle as the other corners a tip is: a dot has none."""
 AT_TIP = 1.5
 """How far from the end of a line the tip of its head may be, mm: in hand drawings the line goes on under the head."""
 BESIDE = 0.8
@@ -97,10 +95,15 @@ def arrows(state: Comparison) -> None:
         done.add(i)
         if how is _At.BACKWARDS:
             _tell(state, arrow, codes.POINTS_BACK(), state.elements[arrow.n].length)
-        elif how in (_At.IN_PLACE, _At.ALONG):
-            _off_by(state, arrow, off)
+        elif how in (_At.IN_PLACE, _At.ALONG) and state.found[arrow.n].verdict == "green" and off > state.tolerance:
+            # Only the head tells where the line ends.
+            state.found[arrow.n] = replace(arrow.finding, deviation=off, verdict=verdict(off, state.tolerance),
+                                           remark=codes.TIP_OFF(by=Number(f"{off:.2f}")), at=arrow.tip, reach=5.0)
+    theirs = state.theirs
+    barbs = (np.bincount(theirs.owner, theirs.length)[theirs.owner] < 16.0) & (theirs.length < 8.0) & (theirs.length > 1.0)
     for i, arrow in enumerate(wanted):
-        if i not in done and len(heads.area) and not _open_head(state, arrow.tip):
+        ends = barbs & ((np.abs(theirs.a - arrow.tip) < 0.6) | (np.abs(theirs.b - arrow.tip) < 0.6))
+        if i not in done and len(heads.area) and ends.sum() < 2:  # two short lines that meet at a tip are a head
             _tell(state, arrow, codes.NO_HEAD(), 2 * state.tolerance)
     state.used_areas.update(int(heads.area[k]) for k in taken)
 
@@ -123,22 +126,10 @@ def _of_arrow(arrow: _Arrow, heads: Heads) -> Iterator[tuple[_At, float, int]]:
 
 def heads_in(space: DrawingSpace) -> Heads:
     """The heads of a drawing: small filled areas, their tips farthest from their middles."""
-    area, tips, ways = [], [], []
-    for k, a in enumerate(space.areas):
-        if a.solid and np.ptp(a.points.real) < LARGEST and np.ptp(a.points.imag) < LARGEST:
-            middle = complex(a.points.mean())
-            if (far := pointed(a.points)) is not None:
-                area.append(k)
-                tips.append(middle + far)
-                ways.append(far / abs(far))
-    return Heads(np.array(area, dtype=np.int64), np.array(tips, dtype=complex), np.array(ways, dtype=complex))
-
-
-def pointed(z: Points) -> complex | None:
-    """The way from the middle of an area to its tip; None where it has none: it is a dot, not a head."""
-    from_middle = z - z.mean()
-    far = complex(from_middle[np.abs(from_middle).argmax()])
-    return far if abs(far) > POINTED * np.median(np.abs(from_middle)) else None
+    rows = [(k, complex(a.points.mean()), far) for k, a in enumerate(space.areas)
+            if a.solid and max(np.ptp(a.points.real), np.ptp(a.points.imag)) < LARGEST and (far := pointed(a.points)) is not None]
+    middle, away = (np.array([row[k] for row in rows], dtype=complex) for k in (1, 2))
+    return Heads(np.array([k for k, _, _ in rows], dtype=np.int64), middle + away, away / np.abs(away))
 
 
 def _wanted(state: Comparison) -> Iterator[_Arrow]:
@@ -186,27 +177,12 @@ def _drawn_aside(state: Comparison, arrow: _Arrow, tip: complex) -> bool:
     return True
 
 
-def _off_by(state: Comparison, arrow: _Arrow, off: float) -> None:
-    """Tell how far a tip is off where only the head tells where the line ends."""
-    if state.found[arrow.n].verdict == "green" and off > state.tolerance:
-        remark = codes.TIP_OFF(by=Number(f"{off:.2f}"))
-        state.found[arrow.n] = replace(arrow.finding, deviation=off, verdict=verdict(off, state.tolerance), remark=remark,
-                                       at=arrow.tip, reach=5.0)
-
-
 def _tell(state: Comparison, arrow: _Arrow, remark: Remark, deviation: float) -> None:
     """Add what is wrong with the head of an arrow to what is known of its line."""
     finding = state.found[arrow.n]
     deviation = max(deviation, finding.deviation)
     state.found[arrow.n] = replace(finding, verdict=verdict(deviation, state.tolerance), deviation=deviation,
                                    remark=joined((finding.remark, remark)))
-
-
-def _open_head(state: Comparison, tip: complex) -> bool:
-    """Whether two short lines meet at a tip."""
-    ends = (np.abs(state.theirs.a - tip) < 0.6) | (np.abs(state.theirs.b - tip) < 0.6)
-    whole = np.bincount(state.theirs.owner, state.theirs.length)[state.theirs.owner]
-    return int((ends & (whole < 16.0) & (state.theirs.length < 8.0) & (state.theirs.length > 1.0)).sum()) >= 2
 
 
 NEAR = 2.0
@@ -219,8 +195,8 @@ def filled(state: Comparison) -> None:
     """Find the dots and other filled areas by the nearest area; a dot is that of one place."""
     wanted = {n: complex(e.fills[0].mean()) for n, e in enumerate(state.elements)
               if n not in state.found and (e.kind == "fill" or (e.kind == "circle" and e.fills))}
-    dots = np.array([a.solid and _round(a.points) for a in state.space.areas], dtype=bool)
     heads = np.array([pointed(a.points) is not None for a in state.space.areas], dtype=bool)
+    dots = ~heads & np.array([a.solid and len(a.points) > 4 for a in state.space.areas], dtype=bool)
     trials = []
     for n, centre in wanted.items():
         off = np.abs(state.areas - centre)
@@ -242,12 +218,6 @@ def filled(state: Comparison) -> None:
     for n in wanted.keys() - state.found.keys():
         remark = codes.DOT_MISSING() if state.elements[n].kind == "circle" else codes.NOT_FILLED()
         state.found[n] = state.finding(n, 2 * state.tolerance, remark, missing=True)
-
-
-def _round(z: Points) -> bool:
-    """Whether an area is a dot: as far to all its sides."""
-    off = np.abs(z - z.mean())
-    return bool(len(z) > 4 and off.max() < 1.3 * np.median(off))
 
 
 def heads_of_dimensions(state: Comparison) -> None:

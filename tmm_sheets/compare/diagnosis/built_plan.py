@@ -21,14 +21,23 @@ from tmm_sheets.compare.cad.plan_judge import GAIN, MIN_MOVED_MM, Cause, judge_v
 from tmm_sheets.compare.cad.plan_views import PlanRecord
 from tmm_sheets.compare.codes import Own, Remark, Sentence, joined
 from tmm_sheets.compare.diagnosis.hypotheses import KINDS, TOLD, Hypothesis, any_of, replay
-from tmm_sheets.compare.elements import Element, ElementView, KnownSheet, plans_of
-from tmm_sheets.compare.findings import Finding, FindingRecord, Found, called, counted, millimetres, verdict
-from tmm_sheets.compare.placing import HINGE, Placing, shafts
-from tmm_sheets.compare.story import StoryPicture, ToldMistake
+from tmm_sheets.compare.elements import Element, ElementView, KnownSheet, grouped, plans_of
+from tmm_sheets.compare.findings import (
+    Finding,
+    FindingRecord,
+    Found,
+    StoryPicture,
+    ToldMistake,
+    called,
+    counted,
+    millimetres,
+    verdict,
+)
+from tmm_sheets.compare.placing import HINGE, Placing, moved, shafts
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import letter_of
-from tmm_sheets.construction.step import Plan, Step
-from tmm_sheets.drawing.marks import Arc, Fill, PlacedFrame, Points
+from tmm_sheets.construction.step import Plan, Step, value_at
+from tmm_sheets.drawing.marks import Fill, PlacedFrame, Points, Role
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
@@ -83,8 +92,7 @@ class DrawnPlan:
 
     def place(self, value: Any, k: int) -> complex:
         """Where a point of the plan, or that of a position, is on the sheet."""
-        made = np.asarray(value)
-        return complex(self.frame(complex(made[k] if made.ndim else made)))
+        return complex(self.frame(complex(value_at(value, k))))
 
     @property
     def view(self) -> ElementView:
@@ -96,25 +104,15 @@ class DrawnPlan:
         """Numbers of the positions it is of."""
         return sorted({p.k for p in self.points if p.label} or {self.k})
 
-    @property
-    def of_positions(self) -> bool:
-        """Whether it is the mechanism at all its positions."""
-        return self.plan.name == POSITIONS
-
 
 def drawn_plan(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView) -> DrawnPlan | None:
     """The plan that a view shows, None where it shows none of vectors."""
-    vectors = [e for e in known.elements if e.view == view and e.role == "vector" and e.kind == "line" and e.by is not None
-               and e.by.frame >= 0]
-    frames = {known.sheet.frames[e.by.frame] for e in vectors if e.by is not None}
-    frame = next(iter(frames)) if len(frames) == 1 else None
-    plan = plans.get(frame.plan) if frame is not None else None
-    if frame is None or plan is None or frame.position not in plan.labels:
+    shown = _lines_of(known, plans, view, "vector")
+    if shown is None or shown.frame.position not in shown.plan.labels:
         return None
-    shown = DrawnPlan(plan, frame, plan.labels.index(frame.position), tuple(vectors), ())
+    vectors, points = shown.vectors, []
     ends = np.concatenate([e.points for e in vectors])
-    points = []
-    for step in plan:
+    for step in shown.plan:
         if np.asarray(step.value).dtype.kind == "c" and step.rule.gives in ("point", "vector", "force"):
             z = shown.place(step.value, shown.k)
             if np.isfinite(z) and np.abs(ends - z).min() < AT_POINT:
@@ -127,22 +125,28 @@ def drawn_plan(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView) 
 
 def drawn_positions(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView) -> DrawnPlan | None:
     """The positions of the mechanism that a view shows, its links for vectors; None where it shows none."""
-    links = [e for e in known.elements if e.view == view and e.role == "link" and e.kind == "line" and e.by is not None
-             and e.by.frame >= 0]
-    frames = {known.sheet.frames[e.by.frame] for e in links if e.by is not None}
-    frame = next(iter(frames)) if len(frames) == 1 else None
-    plan = plans.get(POSITIONS)
-    if frame is None or plan is None or frame.plan != POSITIONS or frame.position:
+    shown = _lines_of(known, plans, view, "link")
+    if shown is None or shown.frame.plan != POSITIONS or shown.frame.position:
         return None
-    labels = {e.position for e in links}
-    shown = DrawnPlan(plan, frame, 0, tuple(links), ())
-    points = []
-    for step in plan:
+    labels, points = {e.position for e in shown.vectors}, []
+    for step in shown.plan:
         if step.rule.gives == "point":
-            at = [(k, label) for k, label in enumerate(plan.labels) if label in labels] if np.ndim(step.value) else [(0, "")]
+            at = [(k, label) for k, label in enumerate(shown.plan.labels) if label in labels] if np.ndim(step.value) else [(0, "")]
             places = [(shown.place(step.value, k), k, label) for k, label in at]
             points += [PlanPoint(step, z, z, k, label) for z, k, label in places if np.isfinite(z)]
     return replace(shown, points=tuple(points))
+
+
+def _lines_of(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView, role: Role) -> DrawnPlan | None:
+    """The plan that all lines of a role in a view are of, still without points; None where they are of several, or of none."""
+    some = [(e, known.sheet.frames[e.by.frame]) for e in known.elements if e.view == view and e.role == role and e.kind == "line"
+            and e.by is not None and e.by.frame >= 0]
+    frame = some[0][1] if len({frame for _, frame in some}) == 1 else None
+    plan = plans.get(frame.plan) if frame is not None else None
+    if frame is None or plan is None:
+        return None
+    k = plan.labels.index(frame.position) if frame.position in plan.labels else 0
+    return DrawnPlan(plan, frame, k, tuple(e for e, _ in some), ())
 
 
 def _of(e: Element, points: Sequence[PlanPoint]) -> list[PlanPoint]:
@@ -177,8 +181,10 @@ def rebuilt(e: Element, points: Sequence[PlanPoint]) -> Element:
     """An element of a plan whose points come to lie elsewhere; what hangs over a point, and heads, keep their size."""
     points = _of(e, points)
     at_one = [p for p in points if p.label]
-    if at_one and e.role in ("symbol", "point") and e.kind != "circle":
-        return _with_its_point(e, at_one)
+    if at_one and e.role in ("symbol", "point") and e.kind != "circle":  # a symbol goes with the point it is drawn at
+        near = min(at_one, key=lambda p: abs(p.was - e.middle))
+        stays = abs(near.was - e.middle) > MARK or abs(near.now - near.was) < AT_POINT
+        return e if stays else moved(e, Placing(shift=near.now - near.was))
     if e.kind == "line":
         new = between(e, points)
         if np.array_equal(new, e.points):
@@ -196,21 +202,7 @@ def rebuilt(e: Element, points: Sequence[PlanPoint]) -> Element:
     if at is None or off > (AT_POINT if e.kind == "circle" else BESIDE):
         return e
     one = _meant(e, [p for p in points if abs(p.was - at) < off + AT_POINT])
-    return _shifted(e, one.now - one.was)
-
-
-def _with_its_point(e: Element, points: Sequence[PlanPoint]) -> Element:
-    """A symbol goes with the point it is drawn at."""
-    near = min(points, key=lambda p: abs(p.was - e.middle))
-    stays = abs(near.was - e.middle) > MARK or abs(near.now - near.was) < AT_POINT
-    return e if stays else _shifted(e, near.now - near.was)
-
-
-def _shifted(e: Element, by: complex) -> Element:
-    """An element elsewhere; heads and arcs go with it."""
-    return replace(e, points=e.points + by, centre=e.centre + by, fills=tuple(f + by for f in e.fills),
-                   pieces=tuple(p + by for p in e.pieces),
-                   marks=tuple(m._replace(centre=m.centre + by) if isinstance(m, Arc) else m for m in e.marks))
+    return moved(e, Placing(shift=one.now - one.was))
 
 
 def vanished(e: Element) -> bool:
@@ -265,10 +257,6 @@ class BuiltPlan:
         """What was done wrong, as the reader reads it."""
         return self.remark.said()
 
-    def explained(self) -> str:
-        """How much of the plan it explains."""
-        return tell("this explains {n} of {all} wrong lines of the plan").format(n=self.explains, all=self.of)
-
 
 def told_view(view: ElementView, built: BuiltPlan | None, bad: Sequence[Finding], rows: Sequence[tuple[int, Element, str]],
               picture: StoryPicture | None, after: Sequence[str] = (), again: str = "") -> ToldMistake:
@@ -287,9 +275,11 @@ def told_view(view: ElementView, built: BuiltPlan | None, bad: Sequence[Finding]
     if len(rows) > SHOWN:
         details.append(tell("and {n} more, in the table").format(n=len(rows) - SHOWN))
     what = built.said() if built is not None else counted(bad)
-    details = details if built is None else [built.explained(), *after, *details]
-    red = any(f.verdict == "red" for f in bad)
-    return ToldMistake(view.name, what, "red" if red else "amber", tuple(details), picture, named=built is not None, again=again)
+    if built is not None:
+        explained = tell("this explains {n} of {all} wrong lines of the plan").format(n=built.explains, all=built.of)
+        details = [explained, *after, *details]
+    return ToldMistake(view.name, what, "red" if any(f.verdict == "red" for f in bad) else "amber", tuple(details), picture,
+                       named=built is not None, again=again)
 
 
 def of_built(built: Mapping[ElementView, BuiltPlan]) -> dict[ElementView, FindingRecord]:
@@ -326,10 +316,7 @@ def built_otherwise(project: Project, known: KnownSheet, findings: Iterable[Find
     done in a plan before leads on to those that follow from it; what would lead a view elsewhere that is right was not done.
     """
     shapes = [f for f in findings if f.element.role in ("vector", "link") and f.element.kind == "line"]
-    wrong: dict[ElementView, list[Element]] = {}
-    for f in shapes:
-        if f.verdict == "red":
-            wrong.setdefault(f.element.view, []).append(f.element)
+    wrong = grouped((f.element for f in shapes if f.verdict == "red"), lambda e: e.view)
     if not wrong or POSITIONS not in project.parts:
         return {}
     plans, errors = errors_of(project, known)
@@ -400,4 +387,4 @@ def _built(causes: Sequence[Cause], both: bool, drawn: DrawnPlan) -> BuiltPlan:
     alike = tuple(c.mistake for c in others if c.mistake is not None and not both)
     said = joined([c.remark for c in causes], "; ") if both else first.mistake or first.remark
     assert said is not None
-    return BuiltPlan(said, 0, 0, first.step, label or drawn.plan.labels[drawn.k], label * drawn.of_positions, alike)
+    return BuiltPlan(said, 0, 0, first.step, label or drawn.plan.labels[drawn.k], label * (drawn.plan.name == POSITIONS), alike)

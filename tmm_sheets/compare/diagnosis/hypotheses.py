@@ -105,8 +105,8 @@ def argument(i: int, other: Callable[[Any], Any]) -> Done:
     return lambda again, values: again(*values[:i], other(values[i]), *values[i + 1:])
 
 
-def displaced(by: complex) -> Done:
-    """Drawn off by so much."""
+def displaced(by: Any) -> Done:
+    """Drawn off by so much, at each position by as much as is told of it."""
     def done(again: Again, values: Sequence[Any]) -> Any:
         made = np.asarray(again(*values))
         return made + (by if made.dtype.kind == "c" else by.real)
@@ -185,9 +185,8 @@ class Hypothesis:
     """One mistake: its kind, the key of its words, the step it was made in, the changes to replay.
 
     ``at`` is the number of the position, None where it was made at every one; ``other`` what stands in the words besides.
-    ``on_paper`` is the plan whose lengths are right all the same: only what was made of them is not. ``drawn`` are plans, by their
-    scale factors, that are so many times as large: only their lengths are wrong. ``everywhere`` is what might have been done
-    otherwise at one position only.
+    ``on_paper`` is the plan whose lengths are right all the same: only what was made of them is not. ``everywhere`` is what might
+    have been done otherwise at one position only.
     """
 
     kind: Kind
@@ -197,7 +196,6 @@ class Hypothesis:
     at: int | None = None
     other: str | Remark = ""
     on_paper: str = ""
-    drawn: tuple[tuple[str, float], ...] = ()
     everywhere: bool = False
 
     @property
@@ -205,11 +203,6 @@ class Hypothesis:
         """The mistake."""
         done = built_otherwise(self.words, step=letter_of(self.step), other=self.other)
         return EVERYWHERE(mistake=done) if self.everywhere else done
-
-    @property
-    def rarity(self) -> float:
-        """What it costs more than a usual one, mm of ink."""
-        return RARITY.get(self.words, 0.0)
 
     def said(self) -> str:
         """The mistake as it is told to the reader."""
@@ -231,7 +224,10 @@ def hypotheses(steps: Iterable[Step], k: int, labels: Sequence[str] = (), whole:
     some = [s for s in steps if (s.plan in LINKAGE or s.plan.startswith("force-")) and np.shape(s.value) in ((), (len(labels),))]
     for step in some:
         yield from _of_step(step, k)
-        yield from _neighbours(step, k, labels)
+        # A computed number taken from the column of a neighbouring position.
+        beside = {(k - 1) % len(labels), (k + 1) % len(labels)} - {k} if step.rule in COMPUTED and np.ndim(step.value) else ()
+        yield from (Hypothesis("neighbour", "position", step, (Change(step, of_position(at), k),), k, Own(labels[at]))
+                    for at in beside)
     by_plan: dict[str, list[Step]] = {}
     for step in some:
         by_plan.setdefault(step.plan, []).append(step)
@@ -291,9 +287,11 @@ def _of_step(step: Step, k: int) -> Iterator[Hypothesis]:
         some = [i for i in (1, 3) if isinstance(step.args[i], Step)]
         yield from (_turned(step, i, k) for i in some)
         if len(some) == 2:
-            yield Hypothesis("parallel", "both parallel", step, (Change(step, _both_turned, k),), k)
+            both = Change(step, lambda again, v: again(v[0], 1j * v[1], v[2], 1j * v[3], *v[4:]), k)
+            yield Hypothesis("parallel", "both parallel", step, (both,), k)
     if rule is rules.ARC_ARC:
-        yield Hypothesis("radii", "radii exchanged", step, (Change(step, _radii_exchanged, k),), k)
+        exchanged = Change(step, lambda again, v: again(v[0], v[3], v[2], v[1], *v[4:]), k)
+        yield Hypothesis("radii", "radii exchanged", step, (exchanged,), k)
     if rule is rules.LAY_OFF and np.ndim(step.value):
         first = float(value_at(step.args[2], 0))
         yield Hypothesis("crank", "crank", step, (Change(step, argument(2, lambda phi: 2 * first - phi)),))
@@ -313,14 +311,6 @@ def _turned(step: Step, i: int, k: int) -> Hypothesis:
     if line.rule is rules.TURN:
         return Hypothesis("parallel", "parallel", step, (change,), k, letter_of(line.args[0]))
     return Hypothesis("parallel", "perpendicular", step, (change,), k, letter_of(line))
-
-
-def _both_turned(again: Again, values: Sequence[Any]) -> Any:
-    return again(values[0], 1j * values[1], values[2], 1j * values[3], *values[4:])
-
-
-def _radii_exchanged(again: Again, values: Sequence[Any]) -> Any:
-    return again(values[0], values[3], values[2], values[1], *values[4:])
 
 
 def of_other_positions(steps: Sequence[Step], k: int, labels: Sequence[str]) -> Iterator[Hypothesis]:
@@ -343,21 +333,13 @@ def _moments(step: Step, k: int) -> Iterator[Hypothesis]:
     for i in terms:
         term = step.args[i]
         if isinstance(term, Step) and complex(value_at(term, k)):
-            change = Change(step, argument(i, lambda x: -x), k)
-            yield Hypothesis("moment", "moment", step, (change,), k, letter_of(term))
+            yield Hypothesis("moment", "moment", step, (Change(step, argument(i, lambda x: -x), k),), k, letter_of(term))
 
 
 # --- a number of a neighbour -----------------------------------------------------------------------------------------------
 
 TURNING = (velocities.ANGULAR_VELOCITY, accelerations.ANGULAR_ACCELERATION)
 COMPUTED = (*TURNING, forces.INERTIA, forces.COUPLE, loads.FORCE, loads.MOMENT)
-
-
-def _neighbours(step: Step, k: int, labels: Sequence[str]) -> Iterator[Hypothesis]:
-    """A computed number taken from the column of a neighbouring position."""
-    if step.rule in COMPUTED and np.ndim(step.value) and np.size(step.value) == len(labels):
-        for at in {(k - 1) % len(labels), (k + 1) % len(labels)} - {k}:
-            yield Hypothesis("neighbour", "position", step, (Change(step, of_position(at), k),), k, Own(labels[at]))
 
 
 def _among(steps: Sequence[Step], k: int) -> Iterator[Hypothesis]:
@@ -383,7 +365,7 @@ def _mirrored(steps: Sequence[Step], k: int) -> Iterator[Hypothesis]:
     moved = [s for s in steps if s.rule.gives in ("point", "vector")]
     last = moved[-1] if moved else None
     for words, mirror in (("across", lambda z: -np.conj(z)), ("upside down", np.conj)):
-        changes = tuple(Change(s, _as_mirrored(s, here, mirror), k) for s in moved)
+        changes = tuple(Change(s, _seen_through(s, here, mirror, mirror), k) for s in moved)
         changes += tuple(Change(s, _sense_from(s, here, mirror), k) for s in steps if s.rule in TURNING)
         if last is not None:
             yield Hypothesis("mirror", words, last, changes, k)
@@ -393,18 +375,14 @@ def computed_with(steps: Sequence[Step], times: float) -> Hypothesis:
     """Numbers taken from a plan with another scale factor than it is drawn with: ``times`` as large, all its lengths right."""
     here = {id(s) for s in steps}
     moved = [s for s in steps if s.rule.gives in ("point", "vector")]
-
-    def scaled(step: Step) -> Done:
-        return lambda again, values: times * again(*_back(step, values, here, lambda z: z / times))
-
-    changes = tuple(Change(s, scaled(s)) for s in moved)
+    changes = tuple(Change(s, _seen_through(s, here, lambda z: times * z, lambda z: z / times)) for s in moved)
     return Hypothesis("scale", "computed scale", moved[-1], changes, other=Number(f"{times:.3g}"),
                       on_paper=moved[-1].plan)
 
 
-def _as_mirrored(step: Step, here: set[int], mirror: Callable[[Any], Any]) -> Done:
-    """Done from the mirror images of the plan's own points and mirrored then."""
-    return lambda again, values: mirror(again(*_back(step, values, here, mirror)))
+def _seen_through(step: Step, here: set[int], to: Callable[[Any], Any], back: Callable[[Any], Any]) -> Done:
+    """Done from the plan's own points as they would lie without a mirror, or to another scale, and seen through it then."""
+    return lambda again, values: to(again(*_back(step, values, here, back)))
 
 
 def _sense_from(step: Step, here: set[int], mirror: Callable[[Any], Any]) -> Done:

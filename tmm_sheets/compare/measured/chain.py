@@ -24,9 +24,10 @@ import numpy as np
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.codes import Number, Own, Remark, Sentence, joined
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind
-from tmm_sheets.compare.measured import measured_units as units
-from tmm_sheets.compare.measured.evidence import CURVED, Evidence, Explanation, JudgedValue, Place, place_of
-from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
+from tmm_sheets.compare.elements import grouped
+from tmm_sheets.compare.measured import measurable as units
+from tmm_sheets.compare.measured.evidence import CURVED, REACH, Evidence, Explanation, JudgedValue, Place, place_of
+from tmm_sheets.compare.measured.measurable import CALCULATED, Measurable, Measurables, angle_apart
 from tmm_sheets.compare.measured.measured_file import FilledTable, MeasuredLine, factor_of
 from tmm_sheets.compare.measured.mistake_search import explanation
 from tmm_sheets.compare.measured.recomputation import OwnNumbers, OwnValue
@@ -35,8 +36,6 @@ from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.numbers import rounded
 from tmm_sheets.words import marked
 
-REACH = 2.0
-"""Tolerances beyond which a number is off, and within which it is explained."""
 FEW, NEARLY_ALL = 4, 0.85
 """Fewer numbers than this must all be explained, more of them to this share."""
 POSITIONS = "positions"
@@ -66,7 +65,7 @@ class SystematicError:
 def whole_table(judged: Sequence[JudgedValue], labels: Sequence[str]) -> SystematicError | None:
     """The mistake with the whole table that explains most numbers; None without. ``labels`` are those of the positions."""
     plans = [j for j in judged if j.entry.plan != POSITIONS]  # else the crank only turns the other way
-    found = [(count, whole) for whole in (*_units(judged), *_mirrored(judged), *_numbered(judged, labels))
+    found = [(count, whole) for whole in (*_units(judged), *_mirrored(judged), *_numbered(judged, labels), *_rescaled(judged))
              if (count := _explained(judged, whole.meant)) and (whole.mistake.kind != "mirror" or _explained(plans, whole.meant))]
     return max(found, key=lambda x: x[0])[1] if found else None
 
@@ -110,20 +109,15 @@ def _whole(kind: Kind, words: str, some: Sequence[JudgedValue], meant: Sequence[
            times: float = 1.0) -> Iterator[SystematicError]:
     step = next((j.entry.terms[-1][0] for j in some if j.entry.terms), None)
     if step is not None:
-        ids = [j.entry.id for j in some]
-        yield SystematicError(Hypothesis(kind, words, step, (), other=other), dict(zip(ids, meant, strict=True)), times)
+        yield SystematicError(Hypothesis(kind, words, step, (), other=other),
+                              {j.entry.id: value for j, value in zip(some, meant, strict=True)}, times)
 
 
 def _units(judged: Sequence[JudgedValue]) -> Iterator[SystematicError]:
     """All numbers of one unit written in another; lengths also those of one plan, where no scale factor is so far off."""
-    of_unit: dict[str, list[JudgedValue]] = defaultdict(list)
-    of_plan: dict[tuple[str, str], list[JudgedValue]] = defaultdict(list)
-    for j in judged:
-        of_unit[j.entry.unit].append(j)
-        of_plan[j.entry.unit, j.entry.plan].append(j)
-    for unit, some in of_unit.items():
+    for unit, some in grouped(judged, lambda j: j.entry.unit).items():
+        plans = [*grouped(some, lambda j: j.entry.plan).values()]
         for other, times in units.OTHERS.get(unit, ()):
-            plans = [of for (u, _), of in of_plan.items() if u == unit]
             for group in ([some] if len(plans) > 1 or times != units.SCALE else []) + (plans if times < units.SCALE else []):
                 said = UNIT(unit=Remark("", other), own=Remark("", unit))
                 yield from _whole("scale", "unit", group, [j.line.value / times for j in group], said, 1 / times)
@@ -134,8 +128,7 @@ def _mirrored(judged: Sequence[JudgedValue]) -> Iterator[SystematicError]:
     some = [j for j in judged if j.entry.kind in ("angle", "sense")]
     if len({j.entry.plan for j in some}) > 1:
         for words, half in (("mechanism across", 180.0), ("mechanism upside down", 0.0)):
-            meant = [half - j.line.value if j.entry.kind == "angle" else -j.line.value for j in some]
-            yield from _whole("mirror", words, some, meant)
+            yield from _whole("mirror", words, some, [half * (j.entry.kind == "angle") - j.line.value for j in some])
 
 
 def _numbered(judged: Sequence[JudgedValue], labels: Sequence[str]) -> Iterator[SystematicError]:
@@ -150,18 +143,35 @@ def _numbered(judged: Sequence[JudgedValue], labels: Sequence[str]) -> Iterator[
         after = {at: labels[(k + by) % len(labels)] for k, at in enumerate(labels)}  # the position whose numbers its rows have
         before = {now: at for at, now in after.items()}
         meant = [(j, of[before[at]].line.value if before[at] in of else j.exact) for of in rows.values()
-                 for at, j in of.items() if before[at] in of or (after[at] in of and _is(j, of[after[at]]))]
+                 for at, j in of.items() if before[at] in of or (after[at] in of and abs(
+                     _off(of[after[at]], j.line.value)) <= REACH * of[after[at]].tolerance)]
         yield from _whole("neighbour", "numbering", [j for j, _ in meant], [value for _, value in meant],
                           ROWS(position=Own(labels[0]), other=Own(labels[by])))
 
 
-def _is(j: JudgedValue, other: JudgedValue) -> bool:
-    """Whether a row has the number of another."""
-    return abs(_off(other, j.line.value)) <= REACH * other.tolerance
+def _rescaled(judged: Sequence[JudgedValue]) -> Iterator[SystematicError]:
+    """The lengths of a plan to another scale factor than stated: all so many times as long."""
+    lengths = (j for j in judged if j.entry.kind == "length" and j.entry.scale and j.line.factor is None)
+    for some in grouped(lengths, lambda j: j.entry.scale).values():
+        value, exact, tolerance = np.array([(_off(j, j.line.value) + j.exact, j.exact, j.tolerance) for j in some]).T
+        long = np.abs(exact) > LONG_ENOUGH * tolerance
+        if long.sum() < SCALED:
+            continue
+        # The lengths are not equally exact: of what each tells the best, then all that agree with it together.
+        told = value[long] / exact[long]
+        agree = np.abs(value - told[:, None] * exact) <= REACH * tolerance * np.maximum(told[:, None], 1.0)
+        weight = np.where(agree[agree.sum(1).argmax()], exact / tolerance**2, 0.0)
+        times = float(weight @ value / (weight @ exact))
+        # A long side drawn a little wrong makes a plan a little smaller, too, but not all of it.
+        like = abs(times - 1) <= SIMILAR_SCALES and (np.abs(value - times * exact) > tolerance * max(times, 1.0)).any()
+        if times > 0 and abs(times - 1) > APART and not like:
+            yield from _whole("scale", "plan scale", some, [j.line.value / times for j in some], Number(f"{times:.3g}"), 1 / times)
 
 
-ROUNDED = 0.005
-"""Share of a result that rounding to three digits on the way (9.81, pi, omega, lengths of links) may bring."""
+SCALED, LONG_ENOUGH = 4, 5.0
+"""Lengths of a plan from which a wrong scale factor is recognised, of so many tolerances at least."""
+SIMILAR_SCALES, APART = 0.15, 0.01
+"""Difference of two scale factors, as a share, below which all lengths must tell of it, and below which they are one."""
 WHOLES = 3
 """Mistakes with the whole table that are looked for."""
 MOST = 10
@@ -280,19 +290,14 @@ def _noted(judged: JudgedValue, measured: float, tolerance: float) -> Remark | N
         return codes.DEGENERATES()
     if judged.verdict != "red":
         return None
-    if judged.entry.kind in ("angle", "sense"):
-        return _way_round(judged)
+    if judged.entry.kind == "sense":
+        return codes.TURNS_BACK()
+    if judged.entry.kind == "angle":
+        opposite = abs(angle_apart(judged.deviation, 180.0, sense=True))
+        return codes.POINTS_OTHER_WAY() if judged.entry.signed and opposite <= judged.tolerance else None
     if judged.entry.signed and abs(-measured - judged.exact) <= tolerance:
         return codes.SIGN()
     return _slip(measured, judged.exact, tolerance, judged.entry.unit)
-
-
-def _way_round(judged: JudgedValue) -> Remark | None:
-    """That something points or turns the other way."""
-    if judged.entry.kind == "sense":
-        return codes.TURNS_BACK()
-    opposite = angle_apart(judged.deviation, 180.0, sense=True)
-    return codes.POINTS_OTHER_WAY() if judged.entry.signed and abs(opposite) <= judged.tolerance else None
 
 
 def _tilted(angle: float, slope: tuple[str, str], found: Measurables, factors: Mapping[str, float]) -> float:
@@ -303,13 +308,11 @@ def _tilted(angle: float, slope: tuple[str, str], found: Measurables, factors: M
 
 def _slip(measured: float, exact: float, tolerance: float, unit: str) -> Remark | None:
     """Slips of the pen that are recognised at sight: another unit, a factor of two or ten."""
-    for other, factor in units.OTHERS.get(unit, ()):
-        if factor != units.SCALE and abs(measured / factor - exact) <= tolerance and abs(exact) > 3 * tolerance:
-            return codes.AS_IF_IN(unit=Remark("", other))
-    for factor in (10.0, 0.1, 2.0, 0.5, 100.0, 0.01, 1000.0, 0.001):
-        if abs(measured / factor - exact) <= tolerance and abs(exact) > 3 * tolerance:
-            return codes.TIMES(times=Number(f"{factor:g}"))
-    return None
+    slips = [(factor, codes.AS_IF_IN(unit=Remark("", other))) for other, factor in units.OTHERS.get(unit, ())
+             if factor != units.SCALE]
+    slips += [(factor, codes.TIMES(times=Number(f"{factor:g}"))) for factor in (10.0, 0.1, 2.0, 0.5, 100.0, 0.01, 1000.0, 0.001)]
+    return next((remark for factor, remark in slips if abs(measured / factor - exact) <= tolerance and abs(exact) > 3 * tolerance),
+                None)
 
 
 # --- arithmetic --------------------------------------------------------------------------------------------------------------
@@ -339,11 +342,11 @@ def _check_arithmetic(judged: list[JudgedValue], filled: FilledTable, found: Mea
             allowed += abs(check.compute(*near) - expected)
             with suppress(ZeroDivisionError):
                 parts.append(expected - check.compute(*none))
-        allowed += ROUNDED * max(map(abs, parts))
+        allowed += CALCULATED * max(map(abs, parts))
         apart = j.line.value - expected if j.entry.signed else abs(j.line.value) - abs(expected)
         if abs(apart) <= allowed:
             computed[id(j)] = needs
-        elif abs(j.deviation) > ROUNDED * abs(j.exact) + j.line.half_digit:
+        elif abs(j.deviation) > CALCULATED * abs(j.exact) + j.line.half_digit:
             j.inconsistent = True
             j.noted = joined((j.noted, _own_gives(needs, expected)), "; ")
     return computed

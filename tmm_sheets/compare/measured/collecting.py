@@ -11,10 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.compare.measured import linkage_items
-from tmm_sheets.compare.measured import measured_units as units
+from tmm_sheets.compare.measured import measurable as units
 from tmm_sheets.compare.measured.measurable import (
     CALCULATED,
+    DEGREES,
+    MILLIMETRES,
     RESULTS,
+    TURNS,
     Measurable,
     Measurables,
     length,
@@ -23,7 +26,6 @@ from tmm_sheets.compare.measured.measurable import (
     scalar,
     size,
 )
-from tmm_sheets.compare.measured.measured_units import DEGREES, MILLIMETRES, TURNS
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import spoken
@@ -57,8 +59,8 @@ def diagrams(project: Project, found: Measurables) -> None:
                 for graph, step in zip(graphs.items(), motion.at_positions, strict=True):
                     _graph(found, graph, step.name, step, project.study.labels)
     if OF_MOMENT[0] in found.scales and project.driver is None:
-        called = tr("M_b") if project.balancing == "Mур" else project.balancing
-        _graph(found, OF_MOMENT, "M_ур", project.study.balance["M"], project.study.labels, called)
+        _graph(found, OF_MOMENT, "M_ур", project.study.balance["M"], project.study.labels,
+               tr("M_b") if project.balancing == "Mур" else project.balancing)
 
 
 def _graph(found: Measurables, graph: tuple[str, str], quantity: str, step: Step, labels: tuple[str, ...],
@@ -116,10 +118,8 @@ def flywheel(project: Project, found: Measurables) -> None:
         plan = plans["crank-speed"]
         found.plans.append((plan, ENERGY))
         for k, label in enumerate(plan.labels[:-1]):
-            step = plan["ω1"]
-            entry_id = f"{RESULTS}/{label}/omega_I"
-            title = tell("Angular velocity of the driving link")
-            found.add(replace(size(title, entry_id, label, "ω_I", units.ANGULAR_SPEED, k, step, by=step), main=False))
+            found.add(replace(size(tell("Angular velocity of the driving link"), f"{RESULTS}/{label}/omega_I", label, "ω_I",
+                                   units.ANGULAR_SPEED, k, plan["ω1"], by=plan["ω1"]), main=False))
 
 
 def _between_positions(f: Flywheel, found: Measurables) -> None:
@@ -207,12 +207,12 @@ def _sliding(plan: Plan, found: Measurables) -> None:
             step = plan[name]
             value = float(np.real(value_at(step, i)))
             ordinate = name.startswith("y")
-            sign = 1.0 if value >= 0 else -1.0
-            found.add(Measurable(
+            entry = Measurable(
                 f"gear-sliding/{label}/{name}", plan.name, plan.title, label, spoken(name) if not ordinate else name,
-                MILLIMETRES if ordinate else "", "length" if ordinate else "result", abs(value) if ordinate else value,
-                ((step, i, complex(sign if ordinate else 1)),), "", 1.0 if ordinate else 0.0, main=False,
-                calculated=0.0 if ordinate else CALCULATED, head=step, signed=not ordinate))
+                MILLIMETRES if ordinate else "", "length" if ordinate else "result", value,
+                ((step, i, 1 + 0j),), "", 1.0 if ordinate else 0.0, main=False, head=step, signed=True,
+                calculated=0.0 if ordinate else CALCULATED)
+            found.add(magnitude(entry) if ordinate else entry)
 
 
 def reducer(project: Project, found: Measurables) -> None:
@@ -288,15 +288,10 @@ def speed_pictures(part: str, plans: Mapping[str, Plan], found: Measurables) -> 
         found.on_paper.add(name)
     pole = abs(complex(done[plans[turning]["P"]].value))
     found.scales[turning] = Scale("μ_n", 30 / pi * mu[0] / (mu[1] * pole), tell("rpm/mm"))
-    for paper, _ in found.plans[-2:]:
-        _lengths_of_speed(paper, found)
-
-
-def _lengths_of_speed(paper: Plan, found: Measurables) -> None:
-    """Velocities of points ``A`` to their ends ``a``, and speeds from the origin ``0``."""
-    for step in paper:
+    # Velocities of points A to their ends a, and speeds from the origin 0.
+    for paper, step in [(plan, step) for plan, _ in found.plans[-2:] for step in plan if step.rule.gives == "point"]:
         tail = paper.steps.get(step.name.upper() if step.name.islower() else "0")
-        if step.rule.gives == "point" and tail is not None and tail is not step and step.name not in ("P", "0"):
+        if tail is not None and tail is not step and step.name not in ("P", "0"):
             found.add(replace(length(paper, found.scales, 0, tail, step, tail.name + step.name), main=tail.name == "0"))
 
 

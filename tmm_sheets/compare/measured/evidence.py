@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.compare.codes import Number, Remark
-from tmm_sheets.compare.diagnosis.hypotheses import Again, Change, Hypothesis, Kind, replay
+from tmm_sheets.compare.codes import Remark
+from tmm_sheets.compare.diagnosis.hypotheses import Change, Hypothesis, Kind, displaced, replay
+from tmm_sheets.compare.elements import grouped
 from tmm_sheets.compare.findings import Verdict, verdict
 from tmm_sheets.compare.measured.measurable import Measurable, angle_apart
 from tmm_sheets.compare.measured.measured_file import MeasuredLine
@@ -104,8 +105,7 @@ class JudgedValue:
         e = self.entry
 
         def moved(step: Step, k: int) -> complex:
-            now, was = (np.asarray(x) for x in (value(step), step.value))
-            return complex(now[k] - was[k] if now.ndim else now - was)
+            return complex(value_at(value(step), k) - value_at(step, k))
 
         if e.is_distance:
             (tail, k, _), (head, _, g) = e.terms
@@ -130,53 +130,18 @@ class JudgedValue:
 
 
 Floats = npt.NDArray[np.float64]
-SCALED = 4
-"""Lengths of a plan from which a wrong scale factor is recognised."""
-SIMILAR_SCALES = 0.15
-"""Difference of two scale factors, as a share, below which all lengths must tell of it."""
-
-
-def is_scaled(j: JudgedValue) -> bool:
-    """Whether a number is a length that a plan's scale factor makes longer, as it was stated."""
-    return bool(j.entry.kind == "length" and j.entry.scale and j.line.factor is None)
-
-
-def times_as_long(measured: Floats, expected: Floats, tolerance: Floats) -> tuple[float, npt.NDArray[np.bool_]] | None:
-    """How many times as long as expected (mm) the lengths of a plan are, and which of them that explains; None when it does not."""
-    long = np.abs(expected) > 5 * tolerance
-    off = long & (np.abs(measured - expected) > 2 * tolerance)
-    if long.sum() < SCALED or off.sum() < 0.6 * long.sum():
-        return None
-
-    def explained(times: float) -> npt.NDArray[np.bool_]:
-        left = 2.0 if abs(times - 1) > SIMILAR_SCALES else 1.0
-        return np.asarray(np.abs(measured - times * expected) <= left * tolerance * max(times, 1.0))
-
-    # The lengths are not equally exact: of what each tells the best, then all that agree with it together.
-    agree = max((explained(float(times)) for times in measured[long] / expected[long]), key=np.sum)
-    if not agree.any():
-        return None
-    weighted = np.where(agree, expected / tolerance**2, 0.0)
-    times = float(weighted @ measured / (weighted @ expected))
-    # A long side drawn a little wrong makes a plan a little smaller, too, but not all of it.
-    needed = 0.8 * len(measured) if abs(times - 1) > SIMILAR_SCALES else len(measured)
-    told_so = explained(times)
-    return None if times <= 0 or abs(times - 1) < 0.01 or told_so.sum() < needed else (times, told_so)
-
-
-def drawn_to(times: float, step: Step, scale: str) -> Hypothesis:
-    """The mistake: the plan of a step, by its scale factor, drawn so many times as large, what is taken from it being right."""
-    return Hypothesis("scale", "plan scale", step, (), other=Number(f"{times:.3g}"), drawn=((scale, times),))
-
-
 CURVED = 0.05
 """Share of what a mistake explains that may be off: its displacement is not known better."""
 HUBER = 2.0
 """Deviation in tolerances beyond which a number counts as spoilt rather than as scattered."""
-LEFT = 2.0
-"""Tolerances that a discrete mistake may leave of the number it is looked for."""
+REACH = 2.0
+"""Tolerances beyond which a number is off, and that a mistake may leave of it."""
 CHANCES = 8
 """Drawings by chance that tell how uncertain a number has become."""
+SEVERAL = 3
+"""Numbers that must be off alike before that is no chance: a shifted column, two mistakes at once, the same at many positions."""
+MOSTLY = 0.9
+"""Share of what is best, or of the number it is looked for, that a mistake has to explain."""
 LOADS = ("loads", "moments")
 """Plans that are seen in the polygons of forces."""
 SENSES: frozenset[Kind] = frozenset({"mirror", "sense", "neighbour"})
@@ -192,7 +157,6 @@ class Explanation:
     Attributes
     ----------
     changes : to be replayed
-    drawn : plans that are so many times as large, by their scale factors
     shares, doubt : what it makes of each number, and how well that is known; in the unit of the number
     score : how much of all deviations it explains
     wrong : discrete mistakes that are equally good, the first of them is told
@@ -208,7 +172,6 @@ class Explanation:
     wrong: tuple[Hypothesis, ...] = ()
     mistake: Mistake | None = None
     then: Explanation | None = None
-    drawn: tuple[tuple[str, float], ...] = ()
     spoils: tuple[int, ...] = ()
 
 
@@ -226,29 +189,19 @@ class Evidence:
         self.left = self.deviation.copy()
         self.tolerance = np.array([j.tolerance for j in judged])
         self.changes: list[Change] = []
-        self.drawn: dict[str, float] = {}
         self._made: dict[int, dict[Step, None]] = {}
         self.predicted = np.zeros(len(judged))
-        self.steps: dict[Place, Step] = {}
-        self.heads: set[Place] = set()
-        gradients: dict[Place, dict[int, complex]] = {}
-        for i, j in enumerate(judged):
-            if j.entry.head is not None:
-                self.heads.add(place_of(j.entry.head, j.at))
-            for step, k, g in j.rows:
-                if g and isfinite(abs(g)):
-                    place = place_of(step, k)
-                    self.steps[place] = step
-                    gradients.setdefault(place, {})[i] = g
-        self.by_place = {place: (np.array(list(of)), np.array([[g.real, g.imag] for g in of.values()]))
-                         for place, of in gradients.items()}
+        self.heads = {place_of(j.entry.head, j.at) for j in judged if j.entry.head is not None}
+        rows = [(i, place_of(step, k), step, g) for i, j in enumerate(judged) for step, k, g in j.rows if g and isfinite(abs(g))]
+        self.steps = {place: step for _, place, step, _ in rows}
+        self.by_place = {place: (np.array([i for i, *_ in some]), np.array([[g.real, g.imag] for *_, g in some]))
+                         for place, some in grouped(rows, lambda row: row[1]).items()}
         self.places = [[place_of(step, k) for step, k, g in j.rows if g and isfinite(abs(g))] for j in judged]
 
     def accept(self, found: Explanation) -> None:
         """Go on with what is left when a mistake is known."""
         self.changes += found.changes
-        self.drawn |= dict(found.drawn)
-        if found.changes or found.drawn:
+        if found.changes:
             self.predicted += np.where(np.isfinite(found.shares), found.shares, 0.0)
         else:
             self.deviation -= found.shares  # only written wrongly
@@ -270,7 +223,7 @@ class Evidence:
 
     def uncertain(self, i: int, left: float) -> bool:
         """Whether a number may be anything with the mistakes found so far: the direction of a vector that has become short."""
-        return bool(self.allowed[i] > self.tolerance[i] and abs(left) <= LEFT * self.allowed[i])
+        return bool(self.allowed[i] > self.tolerance[i] and abs(left) <= REACH * self.allowed[i])
 
     @cached_property
     def allowed(self) -> Floats:
@@ -285,21 +238,15 @@ class Evidence:
         for chance in range(CHANCES):
             rng = np.random.default_rng(chance)
             value = self.with_changes([self._by_chance(s, rng) for s in drawn])
-            off = [j.apart(self.changed(j, value) - float(self.predicted[i])) for i, j in enumerate(self.judged)]
+            off = [j.apart(j.changed(value) - float(self.predicted[i])) for i, j in enumerate(self.judged)]
             spread = np.fmax(spread, np.abs(off))
-        return np.where(np.isfinite(spread) & (spread > LEFT * self.tolerance), spread, self.tolerance)
+        return np.where(np.isfinite(spread) & (spread > REACH * self.tolerance), spread, self.tolerance)
 
     def _by_chance(self, step: Step, rng: np.random.Generator) -> Change:
         """A step with a pencil's error by chance; what is kept nineteen times of twenty is two standard deviations."""
         own = np.nan_to_num(self.errors.own(step))
-        off = (own @ rng.normal(0, 0.5, (len(own), 2, 1)))[:, :, 0]
-
-        def done(again: Again, values: Sequence[Any]) -> Any:
-            made = np.asarray(again(*values))
-            by = off[:, 0] + 1j * off[:, 1] if made.dtype.kind == "c" else off[:, 0]
-            return made + (by if made.ndim else by[0])
-
-        return Change(step, done)
+        off = (own @ rng.normal(0, 0.5, (len(own), 2, 1)))[:, :, 0] @ (1, 1j)
+        return Change(step, displaced(off if np.ndim(step.value) else off[0]))
 
     def _before(self, i: int) -> dict[Step, None]:
         """Steps of the linkage that a number goes back to."""
@@ -327,7 +274,7 @@ class Evidence:
             return False
         share = self.shares_of(h, [i])[0]
         left, allowed = self.after(share, [i])[0], np.hypot(self.allowed[i], CURVED * share)
-        return bool(isfinite(share) and abs(share) > self.allowed[i] and abs(left) <= LEFT * allowed)
+        return bool(isfinite(share) and abs(share) > self.allowed[i] and abs(left) <= REACH * allowed)
 
     def replayed(self, h: Hypothesis) -> Explanation:
         """The construction with a mistake, held against all numbers."""
@@ -344,7 +291,7 @@ class Evidence:
         # However much it explains besides: what is in order was not spoilt.
         spoilt = np.flatnonzero(known & proves & (np.abs(left) <= 1) & (np.abs(after) > SPOILT))
         return Explanation(h.changes, shares, np.where(np.isfinite(doubt), doubt, 0.0), 0.0 if len(spoilt) else score,
-                           drawn=h.drawn, spoils=tuple(spoilt.tolist()))
+                           spoils=tuple(spoilt.tolist()))
 
     @staticmethod
     def proves(j: JudgedValue, h: Hypothesis) -> bool:
@@ -361,12 +308,7 @@ class Evidence:
         """What a discrete mistake makes of some numbers."""
         value = self.with_changes(h.changes)
         return np.array([0.0 if j.entry.kind != "result" and j.entry.plan == h.on_paper else
-                         self.changed(j, value, h.drawn) - self.predicted[i] for i, j in ((i, self.judged[i]) for i in lines)])
-
-    def changed(self, j: JudgedValue, value: Callable[[Step], Any], drawn: Sequence[tuple[str, float]] = ()) -> float:
-        """How much a number changes in a drawing, and by the scale factors of its plan that were found so far or are given."""
-        times = dict(drawn).get(j.entry.scale, self.drawn.get(j.entry.scale, 1.0)) if is_scaled(j) else 1.0
-        return times * (j.exact + j.changed(value)) - j.exact
+                         j.changed(value) - self.predicted[i] for i, j in ((i, self.judged[i]) for i in lines)])
 
     def with_changes(self, changes: Sequence[Change]) -> Any:
         """The construction with the mistakes found so far and further ones."""

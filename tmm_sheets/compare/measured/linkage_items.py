@@ -11,19 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.compare.measured.measurable import (
-    PROTRACTOR,
-    RESULTS,
-    Measurable,
-    Measurables,
-    length,
-    magnitude,
-    measured_step,
-    plain,
-    sense,
-    size,
-    way,
-)
-from tmm_sheets.compare.measured.measured_units import (
     ACCELERATION,
     ANGULAR_ACCELERATION,
     ANGULAR_SPEED,
@@ -34,7 +21,18 @@ from tmm_sheets.compare.measured.measured_units import (
     METRES,
     MILLIMETRES,
     MOMENT,
+    PROTRACTOR,
+    RESULTS,
     SPEED,
+    Measurable,
+    Measurables,
+    length,
+    magnitude,
+    measured_step,
+    plain,
+    sense,
+    size,
+    way,
 )
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
@@ -154,9 +152,8 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
             for name, tail, head in vectors:
                 drawn = length(of.plan, found.scales, k, tail, head, name)
                 terms = tuple((s, i, g * mu) for s, i, g in drawn.terms)
-                called = letters.get(head.name, name)
-                found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, title, label, called, unit, "result", drawn.value * mu,
-                                     terms, key, mu, main=False))
+                found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, title, label, letters.get(head.name, name), unit,
+                                     "result", drawn.value * mu, terms, key, mu, main=False))
                 found.check(f"{RESULTS}/{label}/{name}", [f"{of.plan.name}/{label}/{tail.name}{head.name}"], float)
             for link, step in turning.items():
                 alike = step.rule in (SAME, accelerations.SAME) and link != project.mechanism.crank.link
@@ -237,9 +234,7 @@ def _forces(project: Project, found: Measurables) -> None:
     k = project.force_index
     label = project.study.labels[k]
     for name, step in project.study.forces.arms.items():
-        value = complex(value_at(step, k))
-        found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, tell("Arms of reactions"), label, name, METRES, "result",
-                             abs(value), ((step, k, 1 + 0j if value.real >= 0 else -1 + 0j),), head=step))
+        found.add(size(tell("Arms of reactions"), f"{RESULTS}/{label}/{name}", label, name, METRES, k, step, by=step))
     _balancing(project, found)
     _arms(project, found, k, label)
     _lever(project, found)
@@ -253,8 +248,8 @@ def _loads(project: Project, found: Measurables) -> None:
     for step in study.loads[2]:
         if step.rule.gives in ("force", "number") and step.name not in given:
             unit = FORCE if step.rule.gives == "force" else MOMENT
-            entry = f"{RESULTS}/{label}/{step.name}"
-            found.add(size(tell("Weights and forces of inertia"), entry, label, letter_of(step), unit, k, step, by=step))
+            found.add(size(tell("Weights and forces of inertia"), f"{RESULTS}/{label}/{step.name}", label, letter_of(step), unit, k,
+                           step, by=step))
     for step in (part.vector for part in study.forces.from_moments):
         found.add(size(tell("Reactions"), f"{RESULTS}/{label}/{step.name}", label, letter_of(step), FORCE, k, step, by=step))
 
@@ -278,8 +273,8 @@ def _force_plans(project: Project, found: Measurables) -> None:
                 if step.name in sides:
                     side = sides[step.name]
                     found.check(f"{RESULTS}/{label}/{step.name}", [f"{plan.name}/{label}/{side.tail.name}–{side.head.name}"], float)
-                path = f"{RESULTS}/{label}/{step.name}"
-                found.add(size(tell("Reactions"), path, label, letter_of(step), FORCE, k, step, by=step))
+                found.add(size(tell("Reactions"), f"{RESULTS}/{label}/{step.name}", label, letter_of(step), FORCE, k, step,
+                               by=step))
 
 
 def _balancing(project: Project, found: Measurables) -> None:
@@ -290,8 +285,8 @@ def _balancing(project: Project, found: Measurables) -> None:
     for title, mark, step in ((tell("Balancing by the force plan"), "", study.forces.balancing),
                               (tell("Balancing by the lever"), "-lever", study.lever.balancing)):
         if step is not None:
-            called = letter_of(step) if step.name == name else name
-            found.add(size(title, f"{RESULTS}/{label}/{name}{mark}", label, called, unit, k, step, by=step))
+            found.add(size(title, f"{RESULTS}/{label}/{name}{mark}", label, letter_of(step) if step.name == name else name, unit, k,
+                           step, by=step))
 
 
 def _lever(project: Project, found: Measurables) -> None:
@@ -327,10 +322,9 @@ def _arms(project: Project, found: Measurables, k: int, label: str) -> None:
             arm = Step(f"∂h{force.name}", rules.ARM, (about, at, force))
             value, mu = float(np.real(value_at(arm, k))), found.scales[key].mu
             name = f"h_{force.name}({about.name})"
-            sign = 1.0 if value >= 0 else -1.0
-            found.add(Measurable(f"arms/{label}/{name}", "arms", tell("Arms of forces"), label,
-                                 f"h_{letter_of(force)}({letter_of(about)})", MILLIMETRES, "length", abs(value) / mu,
-                                 ((arm, k, complex(sign / mu)),), key, 1.0, head=arm))
+            found.add(magnitude(Measurable(f"arms/{label}/{name}", "arms", tell("Arms of forces"), label,
+                                           f"h_{letter_of(force)}({letter_of(about)})", MILLIMETRES, "length", value / mu,
+                                           ((arm, k, complex(1 / mu)),), key, 1.0, head=arm)))
             moment = float(ar.moment(*(complex(value_at(a, k)) for a in (about, at, force))))
             if moment:
                 known = force.args[0] if force.rule is OPPOSITE else force

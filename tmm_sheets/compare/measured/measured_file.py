@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from tmm_sheets import csv_tables, encodings, files, quoting, spelling
-from tmm_sheets.compare.measured import measured_units as units
+from tmm_sheets.compare.measured import measurable as units
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, plain
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import BadInput, Problem
@@ -108,11 +108,11 @@ def template(project: str, found: Measurables, everything: bool = False) -> byte
     used = {e.scale for e in asked if e.scale}
     for key, scale in found.scales.items():
         if key in used and units.latin(scale.unit) != "mm/mm":
-            first = f"{FACTOR}/{plain(key)}"
-            rows.append([first, tell("scale factors"), "", scale.symbol, "", scale.unit, told(f"{scale.mu:.10g}")])
+            rows.append([f"{FACTOR}/{plain(key)}", tell("scale factors"), "", scale.symbol, "", scale.unit,
+                         told(f"{scale.mu:.10g}")])
     for (title, label), entries in groupby(asked, key=lambda e: (e.title, e.label)):
         rows.append([f"# {title}, {tell('position {label}').format(label=label)}" if label else f"# {title}"])
-        rows += [[e.id, e.title, e.label, e.quantity, e.steps, units.said(e.unit), ""] for e in entries]
+        rows += [[e.id, e.title, e.label, e.quantity, e.steps, tell(e.unit), ""] for e in entries]
     return csv_tables.written(rows, ";" if decimal_sign(reader()) == "," else ",")
 
 
@@ -127,11 +127,6 @@ def asked_for(found: Measurables, everything: bool = False) -> list[Measurable]:
 
 
 # --- reading ---------------------------------------------------------------------------------------------------------------
-
-
-def check(path: Path, project: Project) -> None:
-    """Refuse a file that cannot be read, before any work is done for it."""
-    _bytes(path, project)
 
 
 class _Refused(Exception):
@@ -152,7 +147,7 @@ def read(path: Path, project: Project, found: Measurables) -> FilledTable:
     """
     name = str(path)
     filled = FilledTable()
-    text = _decoded(_bytes(path, project), name, filled.notes)
+    text = _decoded(content(path, project), name, filled.notes)
     _check_project(text, name, project)
     rows = _rows(text, name, filled.notes, project)
     table = _Table(name, found, filled, *_columns(rows, name, found, filled.notes))
@@ -169,7 +164,8 @@ def _writes(project: Project) -> str:
     return tell("{command} writes a file to fill in").format(command=project.variant.command("compare", "--template"))
 
 
-def _bytes(path: Path, project: Project) -> bytes:
+def content(path: Path, project: Project) -> bytes:
+    """What is in a file, if it may be one of numbers."""
     writes = _writes(project)
     try:
         if path.is_dir():
@@ -206,7 +202,10 @@ def _check_project(text: str, name: str, project: Project) -> None:
     for number, line in enumerate(text.splitlines()[:10], 1):
         match = re.match(rf'\s*"?#\s*(?:{said})\s*([^;,\t"]+)', line)
         other = match[1].strip() if match else ""
-        if other and not _same_project(other, re.split(r'[;,\t"]', called)[0].strip()):
+        mine = re.split(r'[;,\t"]', called)[0].strip()
+        # Files are where they are, seen from one folder or another.
+        same = other == mine or (other.endswith(".toml") and re.split(r"[/\\]", other)[-1] == re.split(r"[/\\]", mine)[-1])
+        if other and not same:
             said = tell("the file is of the project {other}, not of {project}").format(other=other, project=called)
             own = tell('write "{heading}" there, if its numbers are of that project').format(
                 heading=f"# {tell(OF_PROJECT).format(project=called)}")
@@ -217,11 +216,6 @@ def _check_project(text: str, name: str, project: Project) -> None:
                 known = known or files.named(other).is_file()
             hints = ([quoting.command("compare", other, "--measured", name)] if known else []) + [own]
             raise BadInput(Problem(said, name, number, hint="\n    ".join(hints)))
-
-
-def _same_project(one: str, other: str) -> bool:
-    """Whether two names are those of one project: files are where they are, seen from one folder or another."""
-    return one == other or (one.endswith(".toml") and re.split(r"[/\\]", one)[-1] == re.split(r"[/\\]", other)[-1])
 
 
 Row = tuple[int, list[str]]
@@ -267,21 +261,13 @@ def _mend_commas(rows: list[Row], name: str, notes: list[str]) -> None:
         notes.append(said.format(file=name, n=len(mended), line=mended[0]))
 
 
-def _headings() -> dict[str, Column]:
-    """What may stand above the columns, in any language, in small letters."""
-    written: dict[str, Column] = {said.lower(): column for column, heading in COLUMNS.items() for said in every(heading)}
-    return {**OTHER_NAMES, **{column: column for column in COLUMNS}, **written}
-
-
 def _columns(rows: list[Row], name: str, found: Measurables, notes: list[str]) -> tuple[dict[Column, int], list[str], int]:
     """Which column is which, what stands above them, and the first row of numbers."""
     number, head = rows[0]
-    columns: dict[Column, int] = {}
-    known = _headings()
-    for i, title in enumerate(head):
-        column = known.get(title.lower().strip(" :"))
-        if column is not None:
-            columns.setdefault(column, i)
+    written: dict[str, Column] = {said.lower(): column for column, heading in COLUMNS.items() for said in every(heading)}
+    own: dict[str, Column] = {column: column for column in COLUMNS}
+    known = {**OTHER_NAMES, **own, **written}
+    columns = {known[title]: i for i, title in reversed([*enumerate(h.lower().strip(" :") for h in head)]) if title in known}
     if "id" in columns and "measured" in columns:
         return columns, head, 1
     if not columns and (_known(head[0], found) or plain(head[0]).startswith(f"{FACTOR}/")):
@@ -297,8 +283,7 @@ def _missing(heading: str, head: Sequence[str], name: str, number: int) -> Probl
     near = [other for one in every(heading) for other in spelling.near(one, [h.lower() for h in head])]
     hint = tell('did you mean "{near}"? rename it').format(near=near[0]) if near else tell("there are {headings}").format(
         headings=", ".join(filter(None, head)))
-    said = tell('the column "{heading}" is missing').format(heading=tell(heading))
-    return Problem(said, name, number, tell(heading), hint)
+    return Problem(tell('the column "{heading}" is missing').format(heading=tell(heading)), name, number, tell(heading), hint)
 
 
 @dataclass
@@ -323,17 +308,12 @@ class _Table:
         self.unknown: list[Problem] = []
         self.seen: dict[str, MeasuredLine] = {}
         self.used = {e.scale for e in self.found.entries.values() if e.scale in self.found.scales}
-        self.greatest: dict[tuple[str, str], float] = {}
-        for e in self.found.entries.values():
-            row = e.plan, e.quantity
-            self.greatest[row] = max(self.greatest.get(row, 0.0), abs(e.value))
         self.points = self.commas = 0
         self.nothing = {"-", "–", "—", *(said.lower() for said in every(NOT_MEASURED))}
 
     def title(self, column: Column) -> str:
         """What stands above a column."""
-        at = self.columns[column]
-        return self.head[at] if self.head else tell(COLUMNS[column])
+        return self.head[self.columns[column]] if self.head else tell(COLUMNS[column])
 
     def read(self, number: int, cells: Sequence[str]) -> None:
         """Read one line."""
@@ -344,8 +324,8 @@ class _Table:
         key, written = cell("id"), cell("measured")
         if not key:
             if written:
-                said = tell("{number} stands beside no quantity").format(number=written)
-                self.problems.append(Problem(said, self.name, number, self.title("id")))
+                self.problems.append(Problem(tell("{number} stands beside no quantity").format(number=written), self.name, number,
+                                             self.title("id")))
             return
         if not written or written.lower() in self.nothing:
             self.filled.empty += 1
@@ -358,9 +338,10 @@ class _Table:
             entry = _entry(key, self.found, self.filled, self.name, number)
             value, half = _number(written, cell("unit"), entry, self.filled, f"{self.name}:{number}")
             if entry.kind == "result":
-                half = min(half, ROUGHEST * self.greatest[entry.plan, entry.quantity])
+                half = min(half, ROUGHEST * max(abs(e.value) for e in self.found.entries.values()
+                                                if (e.plan, e.quantity) == (entry.plan, entry.quantity)))
             own = cell("factor") if entry.scale else ""
-            factor = _like(_positive(own), self.found.scales[entry.scale]) if own else None
+            factor = _scale_factor(own, self.found.scales[entry.scale]) if own else None
         except _Refused as e:
             problem = Problem(e.message, self.name, number, self.title(e.column), e.hint)
             self.problems.append(problem)
@@ -413,19 +394,15 @@ def _factor(key: str, written: str, found: Measurables, filled: FilledTable, use
     if wanted not in known:
         raise _Refused(tell("unknown scale factor {key}").format(key=key),
                        spelling.hint(wanted, sorted(known), written=f"{FACTOR}/{{}}"), "id")
-    filled.factors[known[wanted]] = _like(_positive(written), found.scales[known[wanted]])
+    filled.factors[known[wanted]] = _scale_factor(written, found.scales[known[wanted]])
 
 
-def _positive(written: str) -> float:
-    match = _NUMBER.fullmatch(_plain(written))
-    value = float(match[0].replace(",", ".")) if match else 0.0
-    if not (isfinite(value) and value > 0):
-        raise _Refused(tell("expected a scale factor, a positive number, not {written}").format(written=repr(written)))
-    return value
-
-
-def _like(factor: float, scale: Scale) -> float:
+def _scale_factor(written: str, scale: Scale) -> float:
     """A scale factor that may be meant: not hundreds of times that of the sheet."""
+    match = _NUMBER.fullmatch(_plain(written))
+    factor = float(match[0].replace(",", ".")) if match else 0.0
+    if not (isfinite(factor) and factor > 0):
+        raise _Refused(tell("expected a scale factor, a positive number, not {written}").format(written=repr(written)))
     if not 1 / APART < factor / scale.mu < APART:
         said = tell("the scale factor {factor} is far from that of the sheet, {mu} {unit}")
         raise _Refused(said.format(factor=told(f"{factor:g}"), mu=told(f"{scale.mu:g}"), unit=scale.unit),
@@ -473,7 +450,7 @@ def _number(written: str, unit: str, entry: Measurable, filled: FilledTable, pla
     half = 0.5 * 10.0 ** (int(exponent or 0) - decimals) if value else 0.0  # nothing is nothing, however it is written
     times = _times(own or unit, entry)
     if times != 1.0:
-        taken = f"{told(f'{value * times:g}')} {units.said(entry.unit)}"
+        taken = f"{told(f'{value * times:g}')} {tell(entry.unit)}"
         filled.notes.append(tell("{place}: {written} taken as {taken}").format(
             place=place, written=written if own else f"{written} {unit}", taken=taken))
     return value * times, half * times
@@ -482,12 +459,12 @@ def _number(written: str, unit: str, entry: Measurable, filled: FilledTable, pla
 def _times(unit: str, entry: Measurable) -> float:
     """How many of the entry's units one of the stated units has."""
     try:
-        return units.times(unit, entry.unit)
+        return units.unit_times(unit, entry.unit)
     except ValueError:
         if not entry.unit:
             said = tell("expected a pure number, not {unit}").format(unit=unit)
             raise _Refused(said, tell("write the number in no unit")) from None
-        own = units.said(entry.unit)
+        own = tell(entry.unit)
         raise _Refused(tell("expected {own}, not {unit}").format(own=own, unit=unit),
                        tell("write the number in {own}").format(own=own)) from None
 

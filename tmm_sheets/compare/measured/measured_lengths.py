@@ -3,29 +3,38 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from itertools import groupby
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_sheets.compare import codes, story
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.codes import Number, Own, Remark, joined
 from tmm_sheets.compare.diagnosis.hypotheses import Change, any_of, displaced, replay
-from tmm_sheets.compare.findings import FindingRecord, Report, as_tree, said_verdict
+from tmm_sheets.compare.elements import grouped
+from tmm_sheets.compare.findings import (
+    FindingRecord,
+    Report,
+    Story,
+    StoryPicture,
+    StoryTable,
+    ToldMistake,
+    as_tree,
+    said_verdict,
+    table_lines,
+)
 from tmm_sheets.compare.measured import measured_file
 from tmm_sheets.compare.measured.chain import EXACT, MOST, judge
 from tmm_sheets.compare.measured.collecting import measurables
-from tmm_sheets.compare.measured.evidence import JudgedValue, Mistake
+from tmm_sheets.compare.measured.evidence import SEVERAL, JudgedValue, Mistake
 from tmm_sheets.compare.measured.measurable import RESULTS, Measurables
-from tmm_sheets.compare.measured.measured_units import said as said_unit
-from tmm_sheets.compare.story import StoryPicture
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import letter_of, sentence
-from tmm_sheets.construction.step import Plan, Step
+from tmm_sheets.construction.step import Plan, Step, value_at
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import decimal, plain, rounded, told
 from tmm_sheets.words import marked, on_paper, reader, tell, tell_n
@@ -55,12 +64,14 @@ class PlanPictures:
         k = start.at
         lines = [(s.tail, s.head) for s in plan.segments] or [
             (s.args[0], s.args[1]) for s in plan if s.rule is rules.RAY and all(isinstance(a, Step) for a in s.args)]
-        at = {s: _at(s.value, k) / mu for pair in lines for s in pair}
+        at = {s: complex(value_at(s, k)) / mu for pair in lines for s in pair}
         if not at:
             return None
-        changed = replay(self.errors, _changes(start))
+        m = start.mistake
+        at_step = [] if m is None else [Change(m.step, displaced(complex(*m.moved)), m.place[1] if np.ndim(m.step.value) else None)]
+        changed = replay(self.errors, start.wrong[0].changes if start.wrong else at_step)
         with np.errstate(all="ignore"):
-            wrong = {s: _at(changed(s), k) / mu for s in at}
+            wrong = {s: complex(value_at(changed(s), k)) / mu for s in at}
         size = np.ptp([z.real for z in at.values()]) + np.ptp([z.imag for z in at.values()])
         origin = next(iter(at.values()))
         if not all(np.isfinite(z) and abs(z - origin) < WIDEST * size for z in wrong.values()):
@@ -72,22 +83,6 @@ class PlanPictures:
         return StoryPicture(tuple(exact), tuple(drawn) if off else (), tuple(off), places)
 
 
-def _changes(start: JudgedValue) -> Iterable[Change]:
-    """What was done wrong, to be drawn again."""
-    if start.wrong:
-        return start.wrong[0].changes
-    m = start.mistake
-    return () if m is None else (Change(m.step, displaced(complex(*m.moved)), m.place[1] if np.ndim(m.step.value) else None),)
-
-
-def _at(value: Any, k: int) -> complex:
-    """A value at a position, or at all."""
-    made = np.asarray(value)
-    return complex(made[k] if made.ndim else made)
-
-
-SEVERAL = 3
-"""From so many positions on at which a quantity is off without a reason it is told once."""
 IN_NO_VIEW = frozenset({RESULTS, "arms"})
 """Groups of rows that stand under a heading of the file, in no view of the sheet."""
 NAME = "measured.csv"
@@ -116,7 +111,7 @@ def template(project: Project, folder: Path, everything: bool, say: Callable[[st
     lines = [said.format(project=called, n=count), f"    {project.variant.command('compare', '--measured', path)}"]
     if not everything:
         lines.append(tell("the main ones; --all asks for all {n}").format(n=len(found.entries)))
-    rows = [{"id": e.id, "plan": e.plan, "position": e.label, "quantity": e.quantity, "unit": said_unit(e.unit)} for e in asked]
+    rows = [{"id": e.id, "plan": e.plan, "position": e.label, "quantity": e.quantity, "unit": tell(e.unit)} for e in asked]
     return Report("\n".join(lines), {"project": project.variant.project.name, "quantities": rows}, {NAME: data}, tuple(found.notes))
 
 
@@ -127,7 +122,7 @@ def table(project: Project) -> bytes:
 
 def compare(project: Project, path: Path, pencil: float, reading: float, say: Callable[[str], None]) -> Report:
     """Judge the numbers of a filled file."""
-    measured_file.check(path, project)
+    measured_file.content(path, project)  # one that cannot be read is refused before any work is done for it
     found = measurables(project, say)
     filled = measured_file.read(path, project, found)
     say(tell("errors"))
@@ -152,25 +147,11 @@ HEAD = ("", marked("pos."), marked("quantity"), marked("exact"), marked("measure
 
 
 def _text(judged: list[JudgedValue], filled: measured_file.FilledTable) -> str:
-    head = tuple(map(tell, HEAD))
-    rows: list[tuple[str, ...]] = []
-    titles: dict[int, str] = {}
-    last = ""
-    for j in judged:
-        if j.entry.title != last:
-            last = titles[len(rows)] = j.entry.title
-        rows.append(_row(j))
-    widths = [max(len(r[i]) for r in (head, *rows)) for i in range(len(head))]
-
-    def line(cells: tuple[str, ...]) -> str:
-        words = (c.ljust(w) if i in (0, 2, 8) else c.rjust(w) for i, (c, w) in enumerate(zip(cells, widths, strict=True)))
-        return "  ".join(words).rstrip()
-
-    lines = [line(head)]
-    for i, row in enumerate(rows):
-        if i in titles:
-            lines += ["", titles[i]]
-        lines.append(line(row))
+    head, *rows = table_lines(tuple(map(tell, HEAD)), [_row(j) for j in judged], (1, *range(3, 8)), whole=True)
+    lines, last = [head], ""
+    for j, row in zip(judged, rows, strict=True):
+        lines += ["", j.entry.title, row] if j.entry.title != last else [row]
+        last = j.entry.title
     return "\n".join([*lines, "", *_summary(judged, filled)])
 
 
@@ -189,9 +170,8 @@ def _row(j: JudgedValue) -> tuple[str, ...]:
         said = [tell("{verdict}, START").format(verdict=colour)]
     if j.remark:
         said.append(j.remark)
-    mark = "·" if j.follows is not None else MARKS[j.verdict]
-    return (mark, e.label, e.quantity, told(_exact(j)), _measured(j).said(), _deviation(j), percent, tolerance,
-            "; ".join(said))
+    return ("·" if j.follows is not None else MARKS[j.verdict], e.label, e.quantity, told(_exact(j)), _measured(j).said(),
+            _deviation(j), percent, tolerance, "; ".join(said))
 
 
 def _measured(j: JudgedValue) -> Remark:
@@ -220,19 +200,19 @@ def _place(j: JudgedValue, more: int = 0) -> Remark:
 
 
 def _story(title: str, judged: list[JudgedValue], filled: measured_file.FilledTable, notes: tuple[str, ...],
-           pictures: PlanPictures) -> story.Story:
+           pictures: PlanPictures) -> Story:
     """The report as it is read: the mistakes, the numbers plan by plan."""
-    tables = tuple(story.StoryTable(of, tuple(map(tell, HEAD[1:])), tuple(_row(j)[1:] for j in some),
+    tables = tuple(StoryTable(of, tuple(map(tell, HEAD[1:])), tuple(_row(j)[1:] for j in some),
                                      tuple(j.verdict for j in some))
                    for of, some in ((of, list(some)) for of, some in groupby(judged, lambda j: j.entry.title)))
-    return story.Story(title, (_counted(judged, filled), *_advice(judged), *notes), tuple(_mistakes(judged, pictures)), tables)
+    return Story(title, (_counted(judged, filled), *_advice(judged), *notes), tuple(_mistakes(judged, pictures)), tables)
 
 
 def _summary(judged: list[JudgedValue], filled: measured_file.FilledTable) -> list[str]:
     mistakes = [line for i, m in enumerate(_mistakes(judged), 1)
                 for line in (f"{i}. {m.where}: {m.what}", *(f"   {line}" for line in m.details))]
-    many = _too_many(judged)
-    return [_counted(judged, filled), *(_advice(judged) if many else []), *mistakes, *([] if many else _advice(judged))]
+    told_last = [*_advice(judged), *mistakes] if _too_many(judged) else [*mistakes, *_advice(judged)]
+    return [_counted(judged, filled), *told_last]
 
 
 def _own(judged: list[JudgedValue]) -> dict[str, int]:
@@ -249,31 +229,24 @@ def _counted(judged: list[JudgedValue], filled: measured_file.FilledTable) -> st
     return said.format(n=len(judged), **_own(judged), follow=sum(j.follows is not None for j in judged), empty=filled.empty)
 
 
-def _starts(judged: list[JudgedValue]) -> list[JudgedValue]:
-    """The mistakes, in the order of drawing."""
-    return sorted((j for j in judged if j.starts), key=lambda j: j.order)
-
-
 def _grouped(judged: list[JudgedValue]) -> list[list[JudgedValue]]:
     """The mistakes as they are told: what nothing explains is one where it is off at several positions alike."""
-    groups: dict[object, list[JudgedValue]] = {}
-    for j in _starts(judged):
-        plain = not j.wrong and j.mistake is None
-        groups.setdefault((j.entry.title, j.entry.quantity) if plain else id(j), []).append(j)
+    starts = sorted((j for j in judged if j.starts), key=lambda j: j.order)
+    groups = grouped(starts, lambda j: id(j) if j.wrong or j.mistake is not None else (j.entry.title, j.entry.quantity))
     split = [[some] if len(some) >= SEVERAL else [[j] for j in some] for some in groups.values()]
     return sorted((some for parts in split for some in parts), key=lambda some: some[0].order)
 
 
-def _everywhere(some: list[JudgedValue]) -> story.ToldMistake:
+def _everywhere(some: list[JudgedValue]) -> ToldMistake:
     """One quantity that is off at several positions."""
     first = some[0].entry
     each = tell("({position}) {measured} instead of {exact}")
     said = [each.format(position=j.entry.label, measured=_measured(j).said(), exact=told(_exact(j))) for j in some]
-    what = codes.THROUGHOUT(n=len(some)).said()
-    return story.ToldMistake(f"{first.title}, {first.quantity}", what, some[0].verdict, ("; ".join(said),))
+    return ToldMistake(f"{first.title}, {first.quantity}", codes.THROUGHOUT(n=len(some)).said(), some[0].verdict,
+                       ("; ".join(said),))
 
 
-def _mistakes(judged: list[JudgedValue], pictures: PlanPictures | None = None) -> Iterator[story.ToldMistake]:
+def _mistakes(judged: list[JudgedValue], pictures: PlanPictures | None = None) -> Iterator[ToldMistake]:
     for j, *more in _grouped(judged)[:MOST]:
         if more:
             yield _everywhere([j, *more])
@@ -287,7 +260,7 @@ def _mistakes(judged: list[JudgedValue], pictures: PlanPictures | None = None) -
             some = ", ".join(f.row for f in after[:6]) + (" ..." if len(after) > 6 else "")
             said = tell_n("{n} follows from it: {numbers}", "{n} follow from it: {numbers}", len(after))
             details.append(said.format(n=len(after), numbers=some))
-        yield story.ToldMistake(_place(j).said(), _remark(j).said(), j.verdict, tuple(details),
+        yield ToldMistake(_place(j).said(), _remark(j).said(), j.verdict, tuple(details),
                             pictures.picture(j) if pictures is not None else None)
 
 
@@ -316,23 +289,16 @@ def _remark(j: JudgedValue) -> Remark:
         return any_of(j.wrong)
     instead = codes.INSTEAD_BY if j.tolerance > EXACT else codes.INSTEAD
     number = instead(measured=_measured(j), exact=_exact(j), times=Number(f"{abs(j.deviation) / j.tolerance:.3g}"))
-    return joined((number, _begins(j), j.noted), "; ") or number
+    begins, off = None, _off(j)
+    if j.mistake is not None:
+        name = letter_of(j.mistake.step)
+        begins = codes.STARTS_WITH(step=name) if off is None else codes.POINT_MOVED(point=name, distance=Number(rounded(off, 2)))
+    return joined((number, begins, j.noted), "; ") or number
 
 
-def _sentence(mistake: Mistake) -> str:
+def _sentence(m: Mistake) -> str:
     """The step to be done again, as the protocol says it."""
-    mu = mistake.mu
-    return sentence(mistake.step, mistake.place[1], (lambda x: x / mu) if mu else float, "mm" if mu else "")
-
-
-def _begins(j: JudgedValue) -> Remark | None:
-    """Which step was drawn wrong, if one was, and by how much where that is a point on paper."""
-    if j.mistake is None:
-        return None
-    name, off = letter_of(j.mistake.step), _off(j)
-    if off is None:
-        return codes.STARTS_WITH(step=name)
-    return codes.POINT_MOVED(point=name, distance=Number(rounded(off, 2)))
+    return sentence(m.step, m.place[1], lambda x: x / (m.mu or 1.0), "mm" if m.mu else "")
 
 
 def _off(j: JudgedValue) -> float | None:
@@ -368,7 +334,9 @@ def records(judged: list[JudgedValue]) -> tuple[list[FindingRecord], list[Findin
 
 def _record(j: JudgedValue, follows: FindingRecord | None, more: int = 0) -> FindingRecord:
     """What is listed of a number; of one that is off at ``more`` positions too that, in its step where it was done wrong."""
-    e, step, h = j.entry, _step(j), j.wrong[0] if j.wrong else None
+    e, h = j.entry, j.wrong[0] if j.wrong else None
+    # The step that was done wrong, of other numbers the one they are measured on.
+    step = h.step if h is not None else j.mistake.step if j.mistake is not None else e.terms[-1][0] if e.terms else None
     remark = (_remark(j) if j.starts or j.verdict != "green" else j.noted) or codes.IN_REACH()
     brief = codes.THROUGHOUT(n=Number(str(more + 1))) if more else h.remark if h is not None else None
     on_paper, off = e.kind == "length", _off(j)
@@ -382,12 +350,3 @@ def _record(j: JudgedValue, follows: FindingRecord | None, more: int = 0) -> Fin
         shift=complex(*j.mistake.moved) / j.mistake.mu if j.mistake is not None and off is not None else None,
         tolerance=j.tolerance if on_paper else None, measured=j.line.value, expected=j.exact, follows=follows, beside=beside,
         where=None if h is not None else _place(j, more), brief=brief)
-
-
-def _step(j: JudgedValue) -> Step | None:
-    """The step that was done wrong, of other numbers the one they are measured on; None where that is no one."""
-    if j.wrong:
-        return j.wrong[0].step
-    if j.mistake is not None:
-        return j.mistake.step
-    return j.entry.terms[-1][0] if j.entry.terms else None

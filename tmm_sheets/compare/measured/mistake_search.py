@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, groupby, pairwise
 from math import isfinite
 from typing import TypeVar
 
@@ -31,8 +31,10 @@ from tmm_sheets.compare.diagnosis.hypotheses import (
 from tmm_sheets.compare.measured.evidence import (
     CURVED,
     HUBER,
-    LEFT,
     LOADS,
+    MOSTLY,
+    REACH,
+    SEVERAL,
     Evidence,
     Explanation,
     Floats,
@@ -40,17 +42,12 @@ from tmm_sheets.compare.measured.evidence import (
     Mistake,
     Place,
     done_in,
-    drawn_to,
-    is_scaled,
     loss,
     place_of,
-    times_as_long,
 )
 from tmm_sheets.construction.step import value_at
 
 T = TypeVar("T")
-LEAST = 3
-"""Numbers that must be off before a column is said to be shifted."""
 
 
 def wrong_rows(evidence: Evidence, i: int) -> Iterator[tuple[Hypothesis, Explanation]]:
@@ -87,31 +84,20 @@ def _next(some: Sequence[T], one: T) -> list[T]:
 
 def _shifted(evidence: Evidence, i: int, rows: Sequence[int], by: int, words: str) -> Iterator[tuple[Hypothesis, Explanation]]:
     """That the rows round a number have, as far as that goes, the numbers of those before them (-1) or after them (1)."""
-    of = {n: rows[k + by] for k, n in enumerate(rows) if 0 <= k + by < len(rows)}
-    at = rows.index(i)
-    run = [i] if i in of and _fits(evidence, i, of[i]) else []
-    for step in (-1, 1):
-        k = at + step
-        while run and 0 <= k < len(rows) and rows[k] in of and _fits(evidence, rows[k], of[rows[k]]):
-            run.append(rows[k])
-            k += step
-    run = sorted(run, key=rows.index)
-    # What is right where it stands has not been shifted.
-    while run and not _off(evidence, run[0]):
-        run.pop(0)
-    while run and not _off(evidence, run[-1]):
-        run.pop()
-    if i in run and sum(_off(evidence, n) for n in run) >= LEAST:
-        judged = evidence.judged
-        said = f"{judged[run[0]].row} … {judged[run[-1]].row}"
-        for h, found in _written(evidence, i, {n: of[n] for n in run}, words, said):
-            # Where the column was cut the number of a row that is not there came in.
-            k = rows.index(run[0 if by < 0 else -1]) + by
-            if _off(evidence, rows[k]):
-                shares = found.shares.copy()
-                shares[rows[k]] = evidence.left[rows[k]]
-                found = replace(found, shares=shares)
-            yield h, found
+    of = dict((b, a) if by < 0 else (a, b) for a, b in pairwise(rows))
+    for fits, block in groupby(rows, lambda n: n in of and _fits(evidence, n, of[n])):
+        run = [*block]
+        off = [k for k, n in enumerate(run) if _off(evidence, n)]
+        # What is right where it stands has not been shifted.
+        if fits and i in run and len(off) >= SEVERAL and off[0] <= run.index(i) <= off[-1]:
+            run = run[off[0]:off[-1] + 1]
+            said = f"{evidence.judged[run[0]].row} … {evidence.judged[run[-1]].row}"
+            for h, found in _written(evidence, i, {n: of[n] for n in run}, words, said):
+                # Where the column was cut the number of a row that is not there came in.
+                cut = rows[rows.index(run[0 if by < 0 else -1]) + by]
+                if _off(evidence, cut):
+                    found.shares[cut] = evidence.left[cut]
+                yield h, found
 
 
 def _written(evidence: Evidence, i: int, of: Mapping[int, int], words: str, other: str) -> Iterator[tuple[
@@ -144,16 +130,14 @@ def _apart(evidence: Evidence, n: int, m: int) -> float:
 
 
 def _off(evidence: Evidence, n: int) -> bool:
-    return bool(abs(evidence.left[n]) > LEFT * evidence.allowed[n])
+    return bool(abs(evidence.left[n]) > REACH * evidence.allowed[n])
 
 
 def _fits(evidence: Evidence, n: int, m: int) -> bool:
     """Whether a row may well have the number of another."""
-    return bool(np.isfinite(evidence.allowed[[n, m]]).all() and abs(_apart(evidence, n, m)) <= LEFT * evidence.allowed[m])
+    return bool(np.isfinite(evidence.allowed[[n, m]]).all() and abs(_apart(evidence, n, m)) <= REACH * evidence.allowed[m])
 
 
-ALONE = 0.9
-"""Share of the number it is looked for that a mistake has to explain, besides most of another one."""
 ENOUGH = 16.0
 """What a mistake has to explain at the least: there are some hundreds, and one of so many explains a little by chance."""
 EQUAL = 0.98
@@ -168,7 +152,7 @@ def done_otherwise(evidence: Evidence, i: int) -> Explanation | None:
     found = [(h, evidence.replayed(h)) for h in mistakes_before(evidence, i) if evidence.leaves_little(i, h)]
     found += wrong_rows(evidence, i)
     best = max((e.score for _, e in found), default=0.0)
-    if best <= ALONE * alone or (best < ENOUGH and evidence.judged[i].entry.kind != "sense"):
+    if best <= MOSTLY * alone or (best < ENOUGH and evidence.judged[i].entry.kind != "sense"):
         return None
     # Of equally good ones the more usual first.
     equal = [_as_often(evidence, h, e) for h, e in found if e.score >= EQUAL * best]
@@ -196,7 +180,7 @@ def mistakes_before(evidence: Evidence, i: int, others: Sequence[int] = ()) -> l
         return []
     before = evidence.made_of([step for n in (i, *others) for step, _, _ in evidence.judged[n].entry.terms])
     k = evidence.labels.index(j.entry.label) if j.entry.label in evidence.labels else 0
-    found = [*hypotheses(before, k, evidence.labels, evidence.whole), *_computed_with(evidence, i), *_drawn_to(evidence, i)]
+    found = [*hypotheses(before, k, evidence.labels, evidence.whole), *_computed_with(evidence, i)]
     if j.entry.plan in MIRRORED:
         points = [s for s in evidence.whole if s.plan == j.entry.plan and s.rule.gives in ("point", "vector")]
         found += of_other_positions(points, k, evidence.labels)
@@ -213,21 +197,8 @@ def _computed_with(evidence: Evidence, i: int) -> Iterator[Hypothesis]:
             yield computed_with(of_plan, times)
 
 
-def _drawn_to(evidence: Evidence, i: int) -> Iterator[Hypothesis]:
-    """That the plan of a length was drawn with another scale factor than stated."""
-    if is_scaled(evidence.judged[i]):
-        scale = evidence.judged[i].entry.scale
-        of_plan = [n for n, j in enumerate(evidence.judged) if is_scaled(j) and j.entry.scale == scale]
-        measured = np.array([evidence.judged[n].line.value for n in of_plan])
-        expected = measured - (evidence.deviation - evidence.predicted)[of_plan]
-        if (found := times_as_long(measured, expected, evidence.allowed[of_plan])) is not None:
-            yield drawn_to(found[0] * evidence.drawn.get(scale, 1.0), evidence.judged[i].entry.terms[-1][0], scale)
-
-
 USUAL = 10.0
 """How far a misplaced point usually lies off, mm."""
-OFF_ALONE = 0.9
-"""Share of the number it is looked for that a mistake has to explain, besides most of another one."""
 DRAWN = ("point", "vector", "length", "ordinate")
 """What is off by millimetres; numbers and forces are off by a share of themselves."""
 NEAR = 0.01
@@ -236,8 +207,6 @@ TRIED = 4
 """Steps that are tried by drawing again, of those that explain most by the Jacobian."""
 WITNESSED = 0.1
 """Share of what a displacement explains of the number it is looked for that it has to explain of others."""
-NEARLY = 0.9
-"""Share of the best explanation with which another is as good."""
 
 
 def displaced_step(evidence: Evidence, i: int, most_is_wrong: bool = False) -> Explanation | None:
@@ -254,11 +223,11 @@ def displaced_step(evidence: Evidence, i: int, most_is_wrong: bool = False) -> E
     candidates = [_mistake(evidence, m.place, exact=True) for m in candidates[:TRIED]]
     alone = float(loss(evidence.left[i] / evidence.allowed[i]))
     own = evidence.judged[i].entry.head
-    good = [m for m in candidates if m.score > alone * OFF_ALONE and _helps(evidence, m, i)]
+    good = [m for m in candidates if m.score > alone * MOSTLY and _helps(evidence, m, i)]
     if not good:
         return None
     best = max(m.score for m in good)
-    near = [m for m in good if m.score >= NEARLY * best]
+    near = [m for m in good if m.score >= MOSTLY * best]
     head = None if own is None else place_of(own, evidence.judged[i].at)
     # Of steps that explain equally well the one that was measured here, else one that was measured at all.
     m = max(near, key=lambda m: (m.place == head, m.place in evidence.heads, m.score))
@@ -269,42 +238,6 @@ def displaced_step(evidence: Evidence, i: int, most_is_wrong: bool = False) -> E
     return Explanation((_change(evidence, m.place, m.moved),), shares, doubt, m.score, mistake=m)
 
 
-def _mistake(evidence: Evidence, place: Place, exact: bool = False) -> Mistake:
-    """The displacement of one step that explains most: least squares over all numbers that depend on it, green ones as well.
-
-    Numbers that other mistakes have spoilt count as much less as they are off (P. J. Huber's weights). With ``exact`` the
-    construction is drawn again with the displacement until that fits (Gauss and Newton's way), else the Jacobian will do. A
-    point that nearly rests moves its speed alike to both sides: the search begins also with what its own plan alone tells. A
-    vector that became longer than it is may point anywhere now: then it begins on all sides.
-    """
-    begins = [np.zeros(2)]
-    if exact:
-        begins += [*_by_own_plan(evidence, place), *_all_round(evidence, place)]
-    return max((_descended(evidence, place, x, exact) for x in begins), key=lambda m: m.score)
-
-
-def _by_own_plan(evidence: Evidence, place: Place) -> Iterator[Floats]:
-    """The displacement that the numbers of the step's own plan tell, where there are others."""
-    lines, gradient = evidence.by_place[place]
-    here = np.array([evidence.judged[i].entry.plan == evidence.steps[place].plan for i in lines])
-    if here.all() or not here.any():
-        return
-    rows, aims = (gradient / evidence.allowed[lines, None])[here], (evidence.left[lines] / evidence.allowed[lines])[here]
-    usual = _usual(evidence, place)
-    begin, *_ = np.linalg.lstsq(np.concatenate((rows, usual)), np.concatenate((aims, np.zeros(2))), rcond=None)
-    yield begin
-
-
-def _all_round(evidence: Evidence, place: Place) -> Iterator[Floats]:
-    """Displacements to four sides, as long as a vector became that was shorter."""
-    lines, gradient = evidence.by_place[place]
-    longer = [float(evidence.left[i] / np.hypot(*g)) for i, g in zip(lines, gradient, strict=True)
-              if (evidence.judged[i].entry.is_distance or evidence.judged[i].entry.is_size)
-              and evidence.left[i] > max(abs(evidence.judged[i].exact), evidence.judged[i].tolerance)]
-    if longer:
-        yield from max(longer) * np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])
-
-
 def _usual(evidence: Evidence, place: Place) -> npt.NDArray[np.float64]:
     """Of what no number sees nothing is told: mistakes are some millimetres, a number is not wrong by more than itself."""
     of = evidence.steps[place]
@@ -312,8 +245,13 @@ def _usual(evidence: Evidence, place: Place) -> npt.NDArray[np.float64]:
     return np.eye(2) / (USUAL * mu if mu else max(abs(complex(value_at(of, place[1]))), 1e-9))
 
 
-def _descended(evidence: Evidence, place: Place, x: npt.NDArray[np.float64], exact: bool) -> Mistake:
-    """The best displacement that the search finds when it begins with ``x``."""
+def _mistake(evidence: Evidence, place: Place, exact: bool = False) -> Mistake:
+    """The displacement of one step that explains most: least squares over all numbers that depend on it, green ones as well.
+
+    Numbers that other mistakes have spoilt count as much less as they are off (P. J. Huber's weights). With ``exact`` the
+    construction is drawn again with the displacement until that fits (Gauss and Newton's way), else the Jacobian will do.
+    """
+    x = np.zeros(2)
     lines, gradient = evidence.by_place[place]
     of, mu, usual = evidence.steps[place], evidence.errors.scale(evidence.steps[place]), _usual(evidence, place)
     rows, aims = gradient / evidence.allowed[lines, None], evidence.left[lines] / evidence.allowed[lines]
@@ -361,7 +299,8 @@ def _helps(evidence: Evidence, mistake: Mistake, i: int) -> bool:
     if not mostly - {i} or not (i in mostly or abs(evidence.left[i]) <= evidence.allowed[i]):
         return False
     lines = evidence.by_place[mistake.place][0]
-    gain = loss(evidence.left[lines] / evidence.allowed[lines]) - loss((evidence.left[lines] - shares) / evidence.allowed[lines])
+    gain = loss(evidence.left[lines] / evidence.allowed[lines]) - loss(
+        (evidence.left[lines] - shares) / evidence.allowed[lines])
     far = float(np.sum((_usual(evidence, mistake.place) @ mistake.moved) ** 2))
     return bool(gain[lines != i].sum() > max(far, WITNESSED * gain[lines == i].sum()))
 
@@ -369,7 +308,7 @@ def _helps(evidence: Evidence, mistake: Mistake, i: int) -> bool:
 def _shares(evidence: Evidence, place: Place, x: Floats) -> Floats:
     """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
     value, lines = evidence.with_changes((_change(evidence, place, x),)), evidence.by_place[place][0]
-    return np.asarray([evidence.changed(evidence.judged[i], value) for i in lines] - evidence.predicted[lines])
+    return np.asarray([evidence.judged[i].changed(value) for i in lines] - evidence.predicted[lines])
 
 
 def _change(evidence: Evidence, place: Place, x: Floats) -> Change:
@@ -384,10 +323,6 @@ def covariance(rows: Floats, usual: Floats) -> Floats:
     """
     inverse = np.linalg.pinv(np.concatenate((rows, usual)))
     return np.asarray(inverse @ inverse.T)
-
-
-RED, WITNESSES = 2.0, 3
-"""Numbers of a plan and position, off by so many tolerances, without which two mistakes at once are not looked for."""
 
 
 def two_mistakes(evidence: Evidence, i: int) -> Explanation | None:
@@ -436,7 +371,7 @@ def _in_one_plan(evidence: Evidence, i: int) -> Iterator[tuple[Hypothesis, Hypot
     plan = _seen_in(evidence.judged[i])
     here = [n for n, j in enumerate(evidence.judged) if j.entry.label == at.label and isfinite(j.tolerance)
             and (_seen_in(j) == plan or (plan in LOADS and j.entry.plan.startswith("force-")))]
-    if sum(abs(evidence.left[n]) > RED * evidence.allowed[n] for n in here) < WITNESSES:
+    if sum(abs(evidence.left[n]) > REACH * evidence.allowed[n] for n in here) < SEVERAL:
         return
     for first, second in _pairs(evidence, i, here):
         both = _both(first, second)
@@ -463,7 +398,7 @@ def _pairs(evidence: Evidence, i: int, here: Sequence[int]) -> Iterator[tuple[Hy
 def _leaves_little_of(evidence: Evidence, lines: Sequence[int], h: Hypothesis) -> bool:
     """Whether all these numbers are nearly what they would be with a mistake."""
     shares = evidence.shares_of(h, lines)
-    return all(isfinite(share) and abs(evidence.judged[n].apart(evidence.left[n] - share)) <= LEFT * np.hypot(
+    return all(isfinite(share) and abs(evidence.judged[n].apart(evidence.left[n] - share)) <= REACH * np.hypot(
         evidence.allowed[n], CURVED * share) for n, share in zip(lines, shares, strict=True))
 
 
@@ -480,13 +415,13 @@ def explanation(evidence: Evidence, i: int, most_is_wrong: bool = False) -> Expl
         alike = reached.copy()  # with all that a step drawn off may explain
         for place in evidence.places[i]:
             alike[evidence.by_place[place][0]] = True
-        if reached.sum() > 1 and done.score > NEARLY * float(np.sum(loss((evidence.left / evidence.allowed)[alike]))):
+        if reached.sum() > 1 and done.score > MOSTLY * float(np.sum(loss((evidence.left / evidence.allowed)[alike]))):
             return done  # nothing can explain much more
     off = displaced_step(evidence, i, most_is_wrong)
-    best = off if done is None or (off is not None and off.score * NEARLY > done.score) else done
+    best = off if done is None or (off is not None and off.score * MOSTLY > done.score) else done
     both = two_mistakes(evidence, i)
     if best is None or both is None:
         return best or both
     # A displacement that may be anything explains much of two mistakes; what it leaves is told by chance no more than one mistake.
-    enough = max(NEARLY * both.score, both.score - ENOUGH if best is off else 0.0)
+    enough = max(MOSTLY * both.score, both.score - ENOUGH if best is off else 0.0)
     return best if best.score > enough else both

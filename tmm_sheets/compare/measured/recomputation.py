@@ -29,13 +29,27 @@ _Values = dict[int, Any]
 """Values of steps by their id()."""
 
 
-class OwnValue:
-    """What the measured numbers that one is made of let expect of it."""
+class _Done(NamedTuple):
+    """A step at a position: the number measured on it, or what it is made of."""
 
-    def __init__(self, j: JudgedValue, again: _Again) -> None:
-        self._j, self._again = j, again
-        self._off = {place: m.deviation * _along(m, again.steps[place].step) for place, m in again.measured.items()}
-        self._values = again.values(self._off)
+    step: Step
+    measured: JudgedValue | None
+    made_of: Sequence[Place]
+
+
+class OwnValue:
+    """What the measured numbers that one is made of let expect of it: ``steps`` done again in their order, from measured ones."""
+
+    def __init__(self, j: JudgedValue, steps: Mapping[Place, _Done], errors: Errors) -> None:
+        self._j, self._steps, self._errors = j, steps, errors
+        self._measured = {place: done.measured for place, done in steps.items() if done.measured is not None}
+        self._off = {place: m.deviation * _along(m, steps[place].step) for place, m in self._measured.items()}
+        self._values: _Values = {}
+        for place, (step, measured, _) in steps.items():
+            if measured is None:
+                self._do(place, self._values)
+            else:
+                _shift(self._values, step, place, self._off[place])
         self.expected = _change(j, self._values)
         """Expected deviation from the exact value, in the unit of the number."""
 
@@ -43,9 +57,9 @@ class OwnValue:
     def tolerance(self) -> float:
         """How far the number may be from that; infinite where it depends on more than what was measured of a point."""
         scatter, unknown = [self._j.reading], 0.0
-        for place, (step, measured, _) in self._again.steps.items():
+        for place, (step, measured, _) in self._steps.items():
             if measured is None:
-                own = self._again.errors.own(step)
+                own = self._errors.own(step)
                 scatter += [self._moved(place, complex(*column)) for column in own[min(place[1], len(own) - 1)].T]
                 continue
             along = _along(measured, step)
@@ -53,7 +67,7 @@ class OwnValue:
                                                        measured.reading)))
             if np.iscomplexobj(step.value) and step.rule.gives != "direction":
                 across = 1j * along / abs(along)
-                across *= self._again.errors.of_sum([(step, place[1], across)])[0]
+                across *= self._errors.of_sum([(step, place[1], across)])[0]
                 unknown = float(np.hypot(unknown, self._moved(place, across)))
         known = float(np.linalg.norm(scatter))
         return float("inf") if unknown > UNSEEN * known else known
@@ -61,18 +75,33 @@ class OwnValue:
     @cached_property
     def reasons(self) -> list[tuple[JudgedValue, float]]:
         """The measured numbers, each with what it contributes to the expected deviation, the greatest first."""
-        parts = [(m, -self._moved(place, -self._off[place])) for place, m in self._again.measured.items()]
+        parts = [(m, -self._moved(place, -self._off[place])) for place, m in self._measured.items()]
         return sorted(parts, key=lambda part: -abs(part[1]))
 
     @property
     def known_in_part(self) -> Iterator[Place]:
         """Steps between the measured numbers and this one, its own included, and points: one number does not tell where one is."""
-        return (place for place, (step, measured, _) in self._again.steps.items()
-                if measured is None or np.iscomplexobj(step.value))
+        return (place for place, (step, measured, _) in self._steps.items() if measured is None or np.iscomplexobj(step.value))
 
     def _moved(self, place: Place, way: complex) -> float:
-        """What the number does when one step comes out elsewhere."""
-        return _change(self._j, self._again.moved(self._values, place, way)) - self.expected if way else 0.0
+        """What the number does when one step comes out elsewhere: what depends on it is done again, nothing else."""
+        if not way:
+            return 0.0
+        values, moved = dict(self._values), {place}
+        _shift(values, self._steps[place].step, place, way)
+        for other, done in self._steps.items():
+            if not moved.isdisjoint(done.made_of):
+                self._do(other, values)
+                moved.add(other)
+        return _change(self._j, values) - self.expected
+
+    def _do(self, place: Place, values: _Values) -> None:
+        step = self._steps[place].step
+        made = np.asarray(self._errors.replayed(step, [values.get(id(a), value_of(a)) for a in self._errors.arguments(step)]))
+        now = np.array(values.get(id(step), step.value))
+        at = (place[1],) if now.ndim else ()
+        now[at] = made[at] if made.ndim else made
+        values[id(step)] = now
 
 
 class OwnNumbers:
@@ -95,34 +124,36 @@ class OwnNumbers:
     def value(self, j: JudgedValue) -> OwnValue | None:
         """What the numbers it is made of let expect of a number; None where not all that it is made of was measured or given."""
         if id(j) not in self._known:
-            again = _Again(self._errors)
-            made = all(self._gathered(step, k, j, again) for step, k, _ in j.entry.terms)
-            self._known[id(j)] = OwnValue(j, again) if made and again.measured else None
+            steps: dict[Place, _Done] = {}
+            made = all(self._gathered(step, k, j, steps) for step, k, _ in j.entry.terms)
+            measured = any(done.measured is not None for done in steps.values())
+            self._known[id(j)] = OwnValue(j, steps, self._errors) if made and measured else None
         return self._known[id(j)]
 
     def _uncertain(self, step: Step, k: int) -> bool:
         error = self._errors.error(step)
         return bool(error[min(k, len(error) - 1)] != 0)
 
-    def _gathered(self, step: Step, k: int, j: JudgedValue, again: _Again) -> bool:
+    def _gathered(self, step: Step, k: int, j: JudgedValue, steps: dict[Place, _Done]) -> bool:
         """Gather what a step is made of, back to measured numbers; False where something drawn was not measured."""
         place = place_of(step, k)
-        if place in again.steps or not self._uncertain(step, k):
+        if place in steps or not self._uncertain(step, k):
             return True
         before = [m for m in self._measured.get(place, ()) if self._rank[id(m)] < self._rank[id(j)]]
         if before:
             # A length is plotted from, a result computed from what was written down.
-            again.take(step, place, max(before, key=lambda m: (m.entry.kind == j.entry.kind, self._rank[id(m)])))
+            measured = max(before, key=lambda m: (m.entry.kind == j.entry.kind, self._rank[id(m)]))
+            steps[place] = _Done(step, measured, ())
             return True
-        if len(again.steps) >= FAR:
+        if len(steps) >= FAR:
             return False
         made_of = [*self._made_of(step, k)]
         for a, at in made_of:
             if np.ndim(a.value) and np.size(a.value) not in (1, np.size(step.value)) and step.rule.compute is not take:
                 return False
-            if self._uncertain(a, at) and not self._gathered(a, at, j, again):
+            if self._uncertain(a, at) and not self._gathered(a, at, j, steps):
                 return False
-        again.make(step, place, [place_of(a, at) for a, at in made_of])
+        steps[place] = _Done(step, None, [place_of(a, at) for a, at in made_of])
         return True
 
     def _made_of(self, step: Step, k: int) -> Iterator[tuple[Step, int]]:
@@ -145,63 +176,6 @@ class OwnNumbers:
             values[i] = values[i] + np.max(self._errors.error(args[i])) * (1 + 1j if np.iscomplexobj(values[i]) else 1)
             self._rows[id(step), i] = np.asarray(self._errors.replayed(step, values)) != step.value
         return bool(self._rows[id(step), i][k])
-
-
-class _Done(NamedTuple):
-    """A step at a position: the number measured on it, or what it is made of."""
-
-    step: Step
-    measured: JudgedValue | None
-    made_of: Sequence[Place]
-
-
-class _Again:
-    """Steps done again in their order, from measured numbers."""
-
-    def __init__(self, errors: Errors) -> None:
-        self.errors = errors
-        self.steps: dict[Place, _Done] = {}
-
-    @property
-    def measured(self) -> dict[Place, JudgedValue]:
-        """The numbers all begins with."""
-        return {place: done.measured for place, done in self.steps.items() if done.measured is not None}
-
-    def take(self, step: Step, place: Place, j: JudgedValue) -> None:
-        """Begin with a measured number."""
-        self.steps[place] = _Done(step, j, ())
-
-    def make(self, step: Step, place: Place, made_of: Sequence[Place]) -> None:
-        """Do a step again from what is there."""
-        self.steps[place] = _Done(step, None, made_of)
-
-    def values(self, shifts: Mapping[Place, complex]) -> _Values:
-        """Values of the steps when the measured ones come out so much elsewhere."""
-        values: _Values = {}
-        for place, (step, measured, _) in self.steps.items():
-            if measured is None:
-                self._do(place, values)
-            else:
-                _shift(values, step, place, shifts[place])
-        return values
-
-    def moved(self, values: _Values, place: Place, way: complex) -> _Values:
-        """The same with one step elsewhere: what depends on it is done again, nothing else."""
-        values, moved = dict(values), {place}
-        _shift(values, self.steps[place].step, place, way)
-        for other, done in self.steps.items():
-            if not moved.isdisjoint(done.made_of):
-                self._do(other, values)
-                moved.add(other)
-        return values
-
-    def _do(self, place: Place, values: _Values) -> None:
-        step = self.steps[place].step
-        made = np.asarray(self.errors.replayed(step, [values.get(id(a), value_of(a)) for a in self.errors.arguments(step)]))
-        now = np.array(values.get(id(step), step.value))
-        at = (place[1],) if now.ndim else ()
-        now[at] = made[at] if made.ndim else made
-        values[id(step)] = now
 
 
 def _shift(values: _Values, step: Step, place: Place, way: complex) -> None:

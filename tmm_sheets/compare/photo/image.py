@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 
 from tmm_sheets import apart
-from tmm_sheets.compare import codes, view_places
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.plan_ink import COUNTED_MM, Figure, Fit, Floats
 from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.diagnosis import built_plan
@@ -43,7 +43,7 @@ from tmm_sheets.compare.photo.profiles import line_level, noise_level, pixels, s
 from tmm_sheets.compare.photo.rectification import LONGEST, Rectified, rectify
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Map
 from tmm_sheets.compare.photo.traces import ELSEWHERE, ONE_POINT, ExtraInk, InkTrace, as_lines
-from tmm_sheets.compare.placing import Placing
+from tmm_sheets.compare.placing import Placing, read_places
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import told
@@ -313,7 +313,7 @@ def examine(
     path
         JPG, PNG or PDF.
     views
-        File with the places of the views of a sheet with a layout of its own (see ``view_places``).
+        File with the places of the views of a sheet with a layout of its own (see ``placing``).
     pencil
         Error of a point drawn by hand, mm.
     say
@@ -337,7 +337,7 @@ def examine(
         picture = reading.result()
     known = ours.elements
     # Before the rectification, so that what is wrong with the file is told at once.
-    places = view_places.read(views, views_of(ours.sheet)) if views is not None else ()
+    places = read_places(views, views_of(ours.sheet)) if views is not None else ()
     found = rectify(picture, known, path, say, not places)
     notes = (*picture.notes, *found.notes)
     placed = None

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.compare.numbering import Numbered, around, legend, numbered
+from tmm_sheets.compare.overlays import Numbered, around, legend, numbered
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.traces import fixed
 from tmm_sheets.drawing.marks import Points

@@ -21,7 +21,11 @@ from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built, told_vi
 from tmm_sheets.compare.elements import ElementView, dashed, drawn
 from tmm_sheets.compare.findings import (
     FindingRecord,
+    Photo,
     Report,
+    StoryPicture,
+    StoryTable,
+    ToldMistake,
     called,
     of_element,
     point,
@@ -37,7 +41,6 @@ from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.small_marks import Readings
 from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace
-from tmm_sheets.compare.story import Photo, StoryPicture, StoryTable, ToldMistake
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import told
 from tmm_sheets.words import either, marked, tell, tell_n

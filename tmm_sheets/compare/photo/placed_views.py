@@ -19,8 +19,7 @@ from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.photo.profiles import fit, inked, line_level
 from tmm_sheets.compare.photo.sheet_map import FRAME, Map
 from tmm_sheets.compare.photo.traces import ExtraInk, as_lines, similarity_base
-from tmm_sheets.compare.placing import BESIDE, SYMBOL, Placing, links, moved
-from tmm_sheets.compare.view_places import StatedViewPlace
+from tmm_sheets.compare.placing import BESIDE, SYMBOL, Placing, StatedViewPlace, links, moved
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import decimal, told
 from tmm_sheets.words import tell, tell_n
