@@ -2,18 +2,11 @@
 
 const address = { written: "" };
 
-function addressNow() {
-  const found = new URLSearchParams(), moving = !$("stage").hidden;
-  if (!$("lesson").hidden) {
-    found.set("plan", lesson.told.plan);
-    found.set("step", lesson.at + 1);
-    if (lesson.mode !== "show") found.set("mode", lesson.mode);
-  } else if (moving) found.set("tab", "motion"); else found.set("sheet", leaf.sheet.sheet);
-  if (record.motion && (moving || !$("lesson").hidden)) {
-    found.set("phi", Number(mod(machine.phi * 180 / Math.PI, 360).toFixed(2)));
-    for (const g of changed()) found.set(g.name, String(machine.given[g.name]));
-  }
-  return `#${found}`;
+function addressNow(changes = record.motion ? changed() : []) {
+  const teaching = !$("lesson").hidden, moving = !$("stage").hidden;
+  const place = teaching ? { plan: lesson.told.plan, step: lesson.at + 1, ...(lesson.mode === "show" ? {} : { mode: lesson.mode }) } : moving ? { tab: "motion" } : { sheet: leaf.sheet.sheet };
+  const numbers = teaching || moving ? { phi: Number(mod(machine.phi * 180 / Math.PI, 360).toFixed(2)), ...Object.fromEntries(changes.map((g) => [g.name, machine.given[g.name]])) } : {};
+  return `#${new URLSearchParams({ ...place, ...numbers })}`;
 }
 
 // A new place in the history for another view, the same one for another angle or step.
@@ -21,6 +14,7 @@ function writeAddress(anew = false) {
   clearTimeout(address.waits);
   const write = () => {
     const text = addressNow();
+    if (parent !== window) parent.postMessage({ at: addressNow([]) }, "*"); // a page that shows this one opens the next one there
     if (text === location.hash) return;
     address.written = text;
     if (anew) location.hash = text; else history.replaceState(null, "", text);

@@ -56,21 +56,39 @@ function unask() {
 
 function invite() {
   $("panel").replaceChildren(node("h2", {}, record.words["how to"]), ...["play it", "click a line", ...(record.motion ? ["turn the crank"] : [])].map((key) =>
-    node("p", { class: "hint" }, say(key))), viewList());
+    node("p", { class: "hint" }, say(key))), ...viewList());
 }
+
+const askMark = (mark) => ask(mark.step, mark.position ?? asked.label);
 
 function clicked([x, y], pixel) {
   leaf.outlines ??= outlines(leaf.sheet.marks);
   const n = nearest(leaf.outlines, leaf.sheet.marks, [x, leaf.height - y], HIT * pixel);
-  if (n < 0) { unask(); return; }
-  const mark = leaf.sheet.marks[n];
-  ask(mark.step, mark.position ?? asked.label);
+  if (n < 0) unask(); else askMark(leaf.sheet.marks[n]);
+}
+
+const nameOf = (id) => `${called(stepOf(id))} · ${planOf(stepOf(id).plan).title}`;
+
+// Marks by keyboard: from their drawing the arrows up and down go over the steps in sight, a mark of each; Enter picks one.
+function byKeys(svg, elements, marks, pick) {
+  const own = marks.flatMap((mark, n) => (stepOf(mark?.step) && !mark.geometry.text ? [[`${mark.step} ${mark.position}`, n]] : [])), stops = [...new Map(own.reverse()).values()].reverse();
+  for (const n of stops) setAll(elements[n], { tabindex: -1, role: "button", "aria-label": [nameOf(marks[n].step), momentOf(marks[n].position)].filter(Boolean).join(", ") });
+  svg.onkeydown = (event) => {
+    const frame = svg.getBoundingClientRect(), seen = (box) => box.right > frame.left && box.left < frame.right && box.bottom > frame.top && box.top < frame.bottom;
+    const there = stops.filter((n) => elements[n].checkVisibility({ visibilityProperty: true }) && seen(elements[n].getBoundingClientRect()));
+    const at = there.indexOf(elements.indexOf(event.target)), by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (by) elements[there[clip(at + by, 0, there.length - 1)]]?.focus({ preventScroll: true });
+    else if (at >= 0 && [" ", "Enter"].includes(event.key)) pick(marks[there[at]]);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  };
 }
 
 // Steps and results, found by their names on the sheet with those of their plans, or by their ids.
 function watchFind() {
   const box = $("find"), drawn = Object.entries(record.steps).filter(([, s]) => record.sheets.some((sheet) => sheet.plans.has(s.plan)));
-  const all = [...drawn.map(([id, s]) => ({ name: `${called(s)} · ${planOf(s.plan).title}`, key: id, id })),
+  const all = [...drawn.map(([id]) => ({ name: nameOf(id), key: id, id })),
     ...Object.entries(record.results).map(([path, { step: id, at: where }]) => ({ name: path, key: path, id, where: where?.[0] }))];
   setAll(box, { placeholder: say("find"), "aria-label": say("find") });
   $("names").replaceChildren(...[...new Set(all.map((one) => one.name))].map((value) => node("option", { value })));

@@ -44,14 +44,10 @@ function notThere(values) {
 
 // From a slider's own number to an end of it: as far as the mechanism goes round all the way there, to a part of it.
 function* reachOf(own, far, put) {
-  let near = own, beyond = null;
-  for (let i = 1; i <= PARTS && beyond === null; i++) {
-    const next = own + (far - own) * i / PARTS;
-    if (yield* assembles(put(next))) near = next; else beyond = next;
-  }
-  if (beyond === null) return far;
-  for (let i = 0; i < HALVES; i++) { const middle = (near + beyond) / 2; if (yield* assembles(put(middle))) near = middle; else beyond = middle; }
-  return near;
+  let near = own, by = (far - own) / PARTS, lost = false;
+  for (let n = 0; n < PARTS && !lost; n++) if (yield* assembles(put(near + by))) near += by; else lost = true;
+  for (let n = 0; n < HALVES && lost; n++) { by /= 2; if (yield* assembles(put(near + by))) near += by; }
+  return lost ? near : far;
 }
 
 // Where a slider ends: at limits of the schema, and of what assembles with the project's other numbers.
@@ -81,13 +77,13 @@ function slidersOf(g, heading) {
     const range = ([low, high]) => { Object.assign(input, { min: low, max: high, step: (high - low) / 400 }); input.value = now(); };
     range([limits.low, limits.high]);
     if (limits.ends) atLeisure(limits.ends(), ([low, high]) => { Object.assign(limits, { low, high, ends: null }); range([low, high]); });
-    const row = node("label", { class: "slide", title: spoken }, node("span", { html: name }), out, input);
+    const row = node("label", { class: "slide", title: spoken }, node("span", { ".innerHTML": name }), out, input);
     const refresh = () => { out.textContent = isTable(g) ? `×${digits(now())}` : told(now(), g.unit, g.shown); row.classList.toggle("changed", now() !== own); input.value = now(); };
-    const put = (x) => setGiven(g.name, i === null ? x : machine.given[g.name].map((v, k) => (k === i ? x : v)));
+    const put = (x) => setGiven(g.name, i === null ? x : machine.given[g.name].map((v, k) => (k === i ? x : v)), true);
     let before = null;
     input.addEventListener("pointerdown", () => { before = machine.given; });
     input.addEventListener("input", () => { before ??= machine.given; put(handy(Number(input.value), Number(input.step), g)); });
-    input.addEventListener("change", () => { if (before) { edits.done.push(before); edits.undone = []; before = null; } showEdits(); });
+    input.addEventListener("change", () => { if (before) edited(before); before = null; });
     machine.watchers.push(refresh);
     refresh();
     return row;
@@ -100,18 +96,24 @@ function put(given) {
   showEdits();
 }
 
+// A change that is done with can be undone.
+function edited(before) {
+  edits.done.push(before);
+  edits.undone = [];
+  showEdits();
+}
+
 function undo() { if (edits.done.length) { edits.undone.push(machine.given); put(edits.done.pop()); } }
 function redo() { if (edits.undone.length) { edits.done.push(machine.given); put(edits.undone.pop()); } }
-function reset() { edits.done.push(machine.given); put({ ...machine.made }); }
+function reset() { edited(machine.given); put({ ...machine.made }); }
 
 const changed = () => record.motion.givens.filter((g) => String(machine.given[g.name]) !== String(g.value));
 
 function showEdits() {
   if (!$("undo")) return;
   $("stale").hidden = !changed().length || !record.motion.all.inputs.some((input) => "found" in input);
-  $("undo").disabled = !edits.done.length;
-  $("redo").disabled = !edits.undone.length;
-  $("reset").disabled = $("save").disabled = !changed().length;
+  const some = { undo: edits.done.length, redo: edits.undone.length, reset: changed().length, save: changed().length };
+  for (const [id, many] of Object.entries(some)) $(id).disabled = !many;
   if (parent !== window) parent.postMessage({ file: projectFile() }, "*");  // of a page that shows this one beside the project file
 }
 

@@ -54,7 +54,8 @@ const UNITS = () => record.words.units ?? {};
 
 function shown(value, unit) {
   const u = unit ? ` ${UNITS()[unit] ?? unit}` : "";
-  if (Array.isArray(value)) return value.length === 2 && typeof value[0] !== "object" ? `(${digits(value[0])}; ${digits(value[1])})${u}` : "…";
+  const near = (x) => digits(Math.abs(x) < 1e-12 * size(value) ? 0 : x); // what rounding leaves of a zero is none
+  if (Array.isArray(value)) return value.length === 2 && typeof value[0] !== "object" ? `(${near(value[0])}; ${near(value[1])})${u}` : "…";
   return typeof value === "object" && value !== null ? "…" : digits(value) + u;
 }
 

@@ -6,7 +6,6 @@ const FINGER = 22, GRIP = 9; // radius that a finger hits, and what is seen, pix
 function makeHandle({ svg }, key, dragged, nudged) {
   const handle = svgNode("g", { class: "handle", tabindex: 0, role: "slider", "aria-label": say(key), "aria-valuemin": 0, "aria-valuemax": 360 });
   handle.append(svgNode("circle", { class: "touch" }), svgNode("circle", { class: "grip" }));
-  svg.setAttribute("role", "group"); // an image holds nothing that is taken hold of
   svg.append(handle);
   handle.addEventListener("pointerdown", (event) => { spin(false); handle.setPointerCapture(event.pointerId); event.preventDefault(); });
   handle.addEventListener("pointermove", (event) => {
@@ -21,10 +20,19 @@ function makeHandle({ svg }, key, dragged, nudged) {
   return handle;
 }
 
-function placeHandle(handle, [x, y], degrees, text = `${Math.round(degrees)}°`) {
-  const pixel = 1 / handle.getScreenCTM().a;
+// How long a pixel is in a drawing, mm, until it shows another part or has another size: to ask for it anew costs a layout.
+const pixelOf = (svg) => (svg.pixel ||= 1 / svg.getScreenCTM().a);
+
+function lookAt(svg, box) {
+  if (svg.box === String(box)) return;
+  Object.assign(svg, { box: String(box), pixel: 0 });
+  svg.setAttribute("viewBox", svg.box);
+}
+
+function placeHandle(handle, [x, y], degrees, text = `${Math.round(mod(degrees, 360))}°`) {
+  const pixel = pixelOf(handle.ownerSVGElement);
   handle.setAttribute("transform", `translate(${fixed(x)} ${fixed(-y)})`);
-  [FINGER, GRIP].forEach((r, n) => handle.children[n].setAttribute("r", fixed(r * pixel)));
+  [FINGER, handle.seen ?? GRIP].forEach((r, n) => handle.children[n].setAttribute("r", fixed(r * pixel)));
   setAll(handle, { "aria-valuenow": Math.round(mod(degrees, 360)), "aria-valuetext": text });
 }
 
@@ -39,4 +47,21 @@ function makeGrip(card) {
     turn(machine.phi + (mod(there - lead + 180, 360) - 180) * Math.PI / 180);
   }, (by, more) => turn(machine.phi + (by + more) * Math.PI / 180));
   return (placed) => placeHandle(handle, placed.point(mark, pin), machine.phi * 180 / Math.PI);
+}
+
+// Fixed points of the mechanism are dragged as well, to a millimetre: the given number follows.
+function makePoints(card) {
+  const mark = card.live.plan === "positions" && card.marks.find((one) => one.role === "link");
+  const given = (id) => id.startsWith("positions/") && stepOf(id).args.length === 1 && record.motion.givens.find((g) => g.places && Array.isArray(g.value) && g.name === stepOf(id).args[0].name);
+  const handles = Object.keys(mark ? record.steps : {}).filter(given).map((id) => {
+    const { name } = given(id), move = (by) => setGiven(name, add(machine.given[name], by).map((x) => Math.round(x * 1000) / 1000), true);
+    const handle = makeHandle(card, "fixed points", (p) => {
+      const [x, y] = mul(cis(-mark.turn), sub(p, placer(parts(machine.phi), card.shrunk).point(mark, id)));
+      move(scale(card.shrunk, [x * mark.mu[0], (mark.mirror ? -1 : 1) * y * mark.mu[1]]));
+    }, (turned, more) => { edited(machine.given); move([-turned / 1000, more / 1000]); });
+    Object.assign(handle, { ariaLabel: `${say("fixed points")}: ${called(stepOf(id))}`, seen: 6 }); // its letter is near
+    handle.addEventListener("gotpointercapture", () => { const before = machine.given; handle.onlostpointercapture = () => edited(before); });
+    return [handle, id];
+  });
+  return (placed) => handles.forEach(([handle, id]) => placeHandle(handle, placed.point(mark, id), 0, shown(valueOf(id, machine.phi), "m")));
 }

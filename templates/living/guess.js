@@ -104,22 +104,12 @@ function wrongPlace(stop, back) {
 // --- what is asked --------------------------------------------------------------------------------------------------------
 
 // Numbers that the size of a vector is made of.
-function knownFor(stop) {
-  const number = (name, value, unit) => `${name} = ${rounded(value, 4)} ${unit}`, unit = unitOf(planOf(lesson.told.plan).unit);
-  const mu = scaleWords(lessonScale(), lesson.told.plan);
-  if (stop.force) return [number(calledHere(stop.force), apart(...stop.ends), unit), mu];
-  if (stop.kind === "similar") {
-    const [q, b, d] = stop.places, [, , nq, nb, nd] = stop.names.map(indexed);
-    return [`${segmentName(stop.tail, stop.to)} = ${inMm(apart(stop.tail, stop.to))} ${UNITS().mm}`, number(nq + nb, apart(q, b), UNITS().m), number(nq + nd, apart(q, d), UNITS().m)];
-  }
-  if (!stop.rate) return [];
-  return [number(calledHere(stop.rate), here(stop.rate), unitOf(stop.rate)), number(`${stop.twice ? "V" : "l"}<sub>${indexed(stop.name)}</sub>`, apart(...stop.along), stop.twice ? unitOf(stop.along[0]) : UNITS().m), mu];
-}
+const knownFor = (stop) => [...factorsOf(stop).filter(([, , unit]) => unit).map(([name, value, unit]) => `${name} = ${unit === UNITS().mm ? inMm(value * lessonScale()) : rounded(value, 4)} ${unit}`), ...(stop.kind === "similar" ? [] : [scaleWords(lessonScale(), lesson.told.plan)])];
 
 function askGuess(stop) {
   const button = (key, act, more = {}) => node("button", { type: "button", class: "chip", onclick: act, ...more }, say(key));
   const question = say(`ask ${stop.kind}`, { point: stop.tail && calledHere(stop.tail), head: calledHere(stop.step), rate: calledHere(stop.step) });
-  const asked = node("p", { ".innerHTML": `${question} <span class="hint">${knownFor(stop).join(", ")}</span>` });
+  const asked = node("p", { ".innerHTML": `${question} <span class="hint">${stop.ends && stop.kind !== "rate" ? knownFor(stop).join(", ") : ""}</span>` });
   if (lesson.mode !== "guess") return [node("p", { ".innerHTML": question.replace(/\?.*/u, "?") })]; // in a lecture the hall is asked
   const check = ASKED[stop.kind] === "sense" ? [[1, "counter-clockwise"], [-1, "clockwise"]].map(([sense, key]) => button(key, () => checkGuess(sense))) : [button("check", () => checkGuess(), { class: "chip main" })];
   return [asked, node("div", { class: "chips" }, ...check, button("show it", giveUp), node("output", { id: "guessed", class: "count" }), node("span", { class: "count score", id: "score" }, score())), node("div", { id: "verdict", role: "status" }, ...verdict())];
@@ -176,7 +166,7 @@ function makeGuess(card) {
 }
 
 // A finger does not cover the tip.
-const besideTip = () => BESIDE_TIP * parseFloat(getComputedStyle(document.documentElement).fontSize) / guess.handle.getScreenCTM().a;
+const besideTip = () => BESIDE_TIP * parseFloat(getComputedStyle(document.documentElement).fontSize) * pixelOf(guess.handle.ownerSVGElement);
 
 function drawGuess() {
   const stop = stopNow(), there = lesson.asks && lesson.mode === "guess" && ASKED[stop.kind] !== "sense";

@@ -6,7 +6,7 @@ const lesson = { told: null, at: -1, asks: false, mode: "show", cards: [], grip:
 const stopNow = () => lesson.told.stops[lesson.at];
 const here = (id) => valueOf(id, machine.phi);
 const apart = (a, b) => size(sub(here(b), here(a)));
-const rounded = (x, many) => String(Number(x.toPrecision(many))).replace(".", decimal());
+const rounded = (x, many) => String(Number(x.toPrecision(many))).replace(".", decimal()).replace("-", "−");
 const inMm = (value) => (value / lessonScale()).toFixed(1).replace(".", decimal());
 const unitOf = (id) => { const unit = stepOf(id)?.unit ?? id; return UNITS()[unit] ?? unit; };
 
@@ -25,38 +25,44 @@ const isNothing = (stop) => stop.ends && stop.kind !== "rate" && apart(...stop.e
 const measuredAt = (stop) => (stop.kind === "meet" ? stop.of.map((tail) => [tail, stop.step]) : stop.ends ? [stop.ends] : []);
 const segmentName = (a, b) => `|${calledHere(a)}${/^\d/.test(stepOf(a).name) ? "–" : ""}${calledHere(b)}|`;
 
+const joined = (factors) => factors.map(([text, power], n) => `${n ? (power < 0 ? " : " : "·") : ""}${text}${power === 2 ? "²" : ""}`).join("");
+
 // A product with so many digits of its factors that what is printed gives what is printed.
-function product(factors, value, sign) {
+function product(factors, value) {
   for (let many = 4; many <= 7; many++) {
     const printed = factors.reduce((all, [x, power]) => all * Number(x.toPrecision(many)) ** power, 1);
-    if (rounded(printed, 4) === rounded(value, 4) || many === 7) return `${factors.map(([x, power], n) => `${n ? (power < 0 ? " : " : "·") : ""}${rounded(x, many)}${power === 2 ? "²" : ""}`).join("")} ${sign} ${rounded(value, 4)}`;
+    if (rounded(printed, 4) === rounded(value, 4) || many === 7) return `${joined(factors.map(([x, power]) => [rounded(x, many), power]))} = ${rounded(value, 4)}`;
   }
 }
 
 const sized = (value) => `${rounded(value, 4)} : ${rounded(lessonScale(), 4)} = <b>${inMm(value)} ${UNITS().mm}</b>`;
 
+// What the size of a vector, or of a rate of turning, is a product of: names, numbers, units, powers.
+function factorsOf(stop) {
+  const unit = unitOf(planOf(lesson.told.plan).unit), { m, mm } = UNITS(), mu = lessonScale(), length = () => [`l<sub>${indexed(stop.name)}</sub>`, apart(...stop.along), m];
+  if (stop.kind === "rate") return [[stepOf(stop.step).unit.endsWith("2") ? "a<sup>τ</sup>" : "V", here(stop.step) * apart(...stop.along), unit, 1], [...length(), -1]];
+  if (stop.twice) return [["2", 2, "", 1], [calledHere(stop.rate), here(stop.rate), unitOf(stop.rate), 1], [`V<sub>${indexed(stop.name)}</sub>`, apart(...stop.along), unitOf(stop.along[0]), 1]];
+  if (stop.rate) return [[calledHere(stop.rate), here(stop.rate), unitOf(stop.rate), stop.power], [...length(), 1]];
+  if (stop.force) return [[calledHere(stop.force), apart(...stop.ends), unit, 1]];
+  if (stop.kind === "similar") {
+    const [q, b, d] = stop.places, [, , nq, nb, nd] = stop.names.map(indexed);
+    return [[segmentName(stop.tail, stop.to), apart(stop.tail, stop.to) / mu, mm, 1], [nq + nd, apart(q, d), m, 1], [nq + nb, apart(q, b), m, -1]];
+  }
+  const [a, b] = stop.kind === "close" ? stop.ends : stop.kind === "meet" && stop.of.length ? [stop.of[0], stop.step] : [];
+  return a ? [[segmentName(a, b), apart(a, b) / mu, mm, 1], ["μ", mu, "", 1]] : [];
+}
+
 // The formula of a stop in letters, in numbers, in millimetres: lines of markup.
 function formulaOf(stop) {
-  const unit = unitOf(planOf(lesson.told.plan).unit), mu = lessonScale();
   if (stop.kind === "line") return [`${stop.across ? "⟂" : "∥"} ${indexed(stop.name)}`];
-  if (stop.rate) {
-    const w = Math.abs(here(stop.rate)), l = apart(...stop.along), value = apart(...stop.ends), of = stop.twice ? `V<sub>${indexed(stop.name)}</sub>` : `l<sub>${indexed(stop.name)}</sub>`;
-    return [`${stop.letter && `${symbolMarkup(stop.letter.replace("̅", ""))} = `}${stop.twice ? "2·" : ""}${calledHere(stop.rate)}${stop.power === 2 ? "²" : ""}·${of}`,
-      `= ${product([...(stop.twice ? [[2, 1]] : []), [w, stop.power], [l, 1]], value, "=")} ${unit}`, sized(value)];
-  }
-  if (stop.force) return [`${calledHere(stop.force)} = ${rounded(apart(...stop.ends), 4)} ${unit}`, sized(apart(...stop.ends))];
-  if (stop.kind === "similar") {
-    const [q, b, d] = stop.places, [nq, nb, nd] = [stop.names[2], stop.names[3], stop.names[4]].map(indexed), mm = apart(...stop.ends) / mu;
-    return [`${segmentName(...stop.ends)} = ${segmentName(stop.tail, stop.to)}·${nq}${nd} : ${nq}${nb}`,
-      `= ${product([[apart(stop.tail, stop.to) / mu, 1], [apart(q, d), 1], [apart(q, b), -1]], mm, "=")} ${UNITS().mm}`];
-  }
-  if (stop.kind === "rate") {
-    const l = apart(...stop.along), value = Math.abs(here(stop.step));
-    return [`|${calledHere(stop.step)}| = ${stepOf(stop.step).unit.endsWith("2") ? "a<sup>τ</sup>" : "V"} : l<sub>${indexed(stop.name)}</sub>`, `= ${product([[value * l, 1], [l, -1]], value, "=")} ${unitOf(stop.step)}`];
-  }
-  if (stop.kind === "meet" && !stop.of.length) return [];
-  const [a, b] = stop.kind === "close" ? stop.ends : stop.kind === "meet" ? [stop.of[0], stop.step] : [];
-  return a ? [`${segmentName(a, b)}·μ = ${product([[apart(a, b) / mu, 1], [mu, 1]], apart(a, b), "=")} ${unit}`] : [];
+  const factors = factorsOf(stop), rate = stop.kind === "rate", value = rate ? Math.abs(here(stop.step)) : Math.abs(factors.reduce((all, [, x, , power]) => all * x ** power, 1));
+  if (!factors.length) return [];
+  const unit = rate ? unitOf(stop.step) : stop.kind === "similar" ? UNITS().mm : unitOf(planOf(lesson.told.plan).unit), letters = joined(factors.map(([name, , , power]) => [name, power]));
+  if (stop.force) return [`${letters} = ${rounded(value, 4)} ${unit}`, sized(value)];
+  const numbers = `${product(factors.map(([, x, , power]) => [Math.abs(x), power]), value)} ${unit}`;
+  if (stop.kind === "meet" || stop.kind === "close") return [`${letters} = ${numbers}`];
+  const left = rate ? `|${calledHere(stop.step)}|` : stop.rate ? stop.letter && symbolMarkup(stop.letter.replace("̅", "")) : segmentName(...stop.ends);
+  return [`${left && `${left} = `}${letters}`, `= ${numbers}`, ...(stop.rate ? [sized(value)] : [])];
 }
 
 // --- what is told ---------------------------------------------------------------------------------------------------------
@@ -75,8 +81,8 @@ function sentencesOf(stop) {
 
 function tellLesson() {
   const stop = stopNow(), all = lesson.told.stops.length, changes = changed().length ? `, ${say("with other numbers")}` : "";
-  $("lessonScrub").value = lesson.at + 1;
-  $("lessonScrub").setAttribute("aria-valuetext", stop ? `${lesson.at + 1}. ${stop.title}` : "0");
+  Object.assign($("lessonScrub"), { max: all, value: lesson.at + 1, ariaValueText: stop ? `${lesson.at + 1}. ${stop.title}` : "0" });
+  $("lessonPlan").value = lesson.told.plan;
   $("lessonBack").disabled = lesson.at < 0;
   $("lessonNext").disabled = lesson.at === all - 1 && !lesson.asks;
   const head = node("h2", { ".innerHTML": stop ? `<span class="count">${plain(say("step {n} of {all}", { n: lesson.at + 1, all }))}</span> ${plain(stop.title)}${plain(changes)}` : plain(planOf(lesson.told.plan).title + changes) });
@@ -95,25 +101,18 @@ function symbolMarkup(symbol) {
 }
 
 function drawEquation(seen) {
-  const place = $("equation"), one = lesson.told.equations[stopNow()?.equation ?? 0], found = [];
-  place.replaceChildren();
-  if (!one) return;
-  one.sides.forEach((side, n) => {
-    if (n || one.head !== "0") found.push(node("span", { class: "op" }, n ? "=" : ""));
-    side.forEach((term, i) => {
-      if (i) found.push(node("span", { class: "op" }, "+"));
-      const { drawn, line } = term, known = term.times === 2, on = seen, bars = known ? (on >= drawn ? 2 : 0) : on >= Math.min(drawn, line < 0 ? drawn : line) ? 1 : 0;
-      const below = on >= drawn ? inMm(apart(term.tail, term.head)) : bars && line >= 0 ? formulaOf(lesson.told.stops[line])[0] : "";
-      found.push(node("button", { type: "button", class: `term c${lesson.terms.get(`${term.tail} ${term.head}`).colour}${bars ? "" : " out"}${[drawn, line].includes(lesson.at) ? " cur" : ""}`, onclick: () => goStop(line >= 0 && lesson.at < line ? line : drawn),
-        ".innerHTML": `${symbolMarkup(term.symbol)}<u class="${bars ? "on" : ""}"></u><u class="${bars > 1 ? "on" : ""}"></u><small>${below}</small>` }));
-    });
-  });
-  if (one.head === "0") found.push(node("span", { class: "op" }, "= 0"));
-  else {
-    found.unshift(node("span", { class: `term head${seen >= one.drawn ? "" : " out"}`, ".innerHTML": `${symbolMarkup(one.head)}<u></u><u></u><small>${seen >= one.drawn ? inMm(apart(lesson.told.pole, one.end)) : ""}</small>` }));
-    found[1].textContent = "=";
-  }
-  place.append(...found);
+  const one = lesson.told.equations[stopNow()?.equation ?? 0], op = (sign) => node("span", { class: "op" }, sign);
+  const filled = (symbol, bars, below) => `${symbolMarkup(symbol)}${[0, 1].map((n) => `<u class="${bars > n ? "on" : ""}"></u>`).join("")}<small>${below}</small>`;
+  const term = ({ symbol, tail, head, times, drawn, line }) => {
+    const bars = times === 2 ? (seen >= drawn ? 2 : 0) : seen >= Math.min(drawn, line < 0 ? drawn : line) ? 1 : 0;
+    const below = seen >= drawn ? inMm(apart(tail, head)) : bars && line >= 0 ? formulaOf(lesson.told.stops[line])[0] : "";
+    return button("", () => goStop(line >= 0 && lesson.at < line ? line : drawn), { ".innerHTML": filled(symbol, bars, below),
+      class: `term c${lesson.terms.get(`${tail} ${head}`).colour}${bars ? "" : " out"}${lesson.at >= 0 && [drawn, line].includes(lesson.at) ? " cur" : ""}` });
+  };
+  const head = one && one.head !== "0" && node("span", { class: `term head${seen >= one.drawn ? "" : " out"}`, ".innerHTML": filled(one.head, 0, seen >= one.drawn ? inMm(apart(lesson.told.pole, one.end)) : "") });
+  const sum = (side) => side.flatMap((each, n) => (n ? [op("+"), term(each)] : [term(each)]));
+  const sides = one?.sides.flatMap((side, n) => (n || head ? [op("="), ...sum(side)] : sum(side))) ?? [];
+  $("equation").replaceChildren(...(head ? [head] : []), ...sides, ...(one && !head ? [op("= 0")] : []));
 }
 
 // --- the two drawings -----------------------------------------------------------------------------------------------------
@@ -139,8 +138,6 @@ function takeLesson(plan, at = -1) {
   lesson.cards[0].caption.textContent = say("mechanism");
   lesson.grip = makeGrip(lesson.cards[0]);
   makeGuess(lesson.cards[1]);
-  $("lessonScrub").max = told.stops.length;
-  $("lessonPlan").value = told.plan;
 }
 
 // The plan is fitted once for each angle, with letters as large as the page's own.
@@ -149,6 +146,7 @@ function fitLesson() {
   for (const card of lesson.cards) {
     const { clientWidth: wide, clientHeight: high } = card.svg, mm = clip(high / 75, rem * 0.19, rem * 0.3);
     card.room = [Math.max(wide / mm - 30, 20), Math.max(high / mm - 24, 20)];
+    card.svg.pixel = 0;
     Object.assign(card, card === lesson.cards[1] && lesson.asks && lesson.mode === "guess" ? roomToGuess() : { shows: null, around: null });
     frameCard(card, [values]);
   }
@@ -209,12 +207,6 @@ function sourceOf(stop, [mechanism, plan]) {
   return through && !stop.across ? [sub(at(through), u), add(at(through), u)] : null;
 }
 
-function turningArrow(centre, sense, kind) {
-  const r = 8, from = sense > 0 ? -0.6 : Math.PI + 0.6, points = Array.from({ length: 17 }, (_, i) => add(centre, scale(r, cis(from + sense * i * 0.15))));
-  stroke(lesson.cards[0], kind, points);
-  arrow(lesson.cards[0], kind, points[15], points[16]);
-}
-
 // What lies over the drawings: lines whose length is not known yet, the glowing link, the vector on its way, its formula.
 function drawOver(t) {
   const placers = placersNow(), stop = stopNow(), mark = lesson.cards[1].marks[0], place = (id) => placers[1].point(mark, id);
@@ -228,12 +220,14 @@ function drawOver(t) {
   $("tag").hidden = true;
   if (!stop || lesson.asks) return;
   const source = isNothing(stop) ? null : sourceOf(stop, placers);
-  if (source && stop.kind !== "rate") stroke(lesson.cards[0], "glow", source);
-  if (stop.kind === "rate") {
-    const sense = Math.sign(here(stop.step)), centre = placers[0].point(lesson.cards[0].marks[0], stop.along[0]);
-    if (source) stroke(lesson.cards[0], "glow", source);
-    if (sense && t === 1) turningArrow(centre, sense, "turning");
-    if (t === 1 && sense) { const b = source[1], u = scale(16 * sense, mul([0, 1], straight(sub(b, source[0])))); arrow(lesson.cards[0], "turning", b, add(b, u)); }
+  if (source) stroke(lesson.cards[0], "glow", source);
+  const sense = stop.kind === "rate" && t === 1 ? Math.sign(here(stop.step)) : 0;
+  if (sense) {
+    const [a, b] = source, card = lesson.cards[0], centre = placers[0].point(card.marks[0], stop.along[0]), from = sense > 0 ? -0.6 : Math.PI + 0.6;
+    const points = spread(from, from + sense * 2.4, 17).map((angle) => step(centre, 8, cis(angle)));
+    stroke(card, "turning", points);
+    arrow(card, "turning", points[15], points[16]);
+    arrow(card, "turning", b, step(b, 16 * sense, across(straight(sub(b, a)))));
   }
   if (t < 1 && source) fly(stop, source, placers[1], t);
   if (t === 1) tagAt(stop, placers[1]);
@@ -268,7 +262,9 @@ function tagAt(stop, plan) {
   tag.innerHTML = lines.map((line) => `<span>${line}</span>`).join("");
   const box = $("fly").getBoundingClientRect(), frame = lesson.cards[1].svg.getBoundingClientRect(), w = tag.offsetWidth, h = tag.offsetHeight;
   const sides = lesson.told.stops.slice(0, lesson.at + 1).flatMap(measuredAt).map((pair) => pair.map((id) => onPage(1, plan.point(mark, id))))
-    .filter((pair) => pair.flat().every(Number.isFinite)), dots = sides.flat();
+    .filter((pair) => pair.flat().every(Number.isFinite));
+  const letters = [...lesson.cards[1].svg.querySelectorAll("text.mark:not([hidden], .undrawn, [visibility=hidden])")].map((one) => one.getBoundingClientRect());
+  const dots = [...sides.flat(), ...letters.map(({ x, y, width, height }) => [x + width / 2 - box.left, y + height / 2 - box.top])];
   const own = stop.ends ?? [stop.tail ?? stop.of?.[0], stop.kind === "meet" ? stop.step : stop.tail], [a, b] = own.map((id) => onPage(1, plan.point(mark, id))), middle = scale(0.5, add(a, b));
   const x0 = frame.left - box.left + 6, y0 = frame.top - box.top + 6, x1 = frame.right - box.left - w - 6, y1 = frame.bottom - box.top - h - 6;
   let best = null;
@@ -303,6 +299,36 @@ function nextStop() {
   if (lesson.asks) giveUp(); else if (lesson.at < lesson.told.stops.length - 1) goStop(lesson.at + 1);
 }
 
+const STOP_MS = 4000, FRAMES = 12; // a stop is drawn and read; pictures of a film in a second
+
+// Stops one after another, up to the last.
+function playLesson(on) {
+  const next = () => { if (lesson.at < lesson.told.stops.length - 1) goStop(lesson.at + 1, false, false); else playLesson(false); };
+  clearInterval(lesson.plays);
+  lesson.plays = on ? setInterval(next, STOP_MS) : 0;
+  if ($("lessonPlay")) showRunning($("lessonPlay"), on);
+  if (on) next();
+}
+
+// The film of a plan as WebM, by the browser itself: the lesson is put on a canvas again and again while it plays.
+async function recordLesson() {
+  const { width, height } = $("lesson").getBoundingClientRect(), part = Math.min(1280 / width, 1), canvas = node("canvas", { width: width * part, height: height * part }), pen = canvas.getContext("2d"), img = new Image();
+  const head = `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" style="font-size: ${getComputedStyle(document.documentElement).fontSize}"><style>${plain(document.querySelector("style").textContent)}</style>`
+    + `<foreignObject width="100%" height="100%"><main xmlns="http://www.w3.org/1999/xhtml" class="${document.body.className}" style="height: 100%; color: var(--ink); background: var(--ground)">`;
+  const recorder = new MediaRecorder(canvas.captureStream(FRAMES), { mimeType: "video/webm", videoBitsPerSecond: 4e6 });
+  recorder.ondataavailable = ({ data }) => download(`${lesson.told.plan}.webm`, data, "video/webm");
+  lesson.at = -1;
+  playLesson(true);
+  recorder.start();
+  while (lesson.plays) {
+    img.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(head + new XMLSerializer().serializeToString($("lesson")) + "</main></foreignObject></svg>")}`;
+    await img.decode();
+    pen.drawImage(img, 0, 0, canvas.width, canvas.height);
+    await new Promise((done) => setTimeout(done, 1000 / FRAMES));
+  }
+  recorder.stop();
+}
+
 // "lecture" or "guess", or out of it again.
 function lessonMode(mode) {
   const was = lesson.mode;
@@ -317,16 +343,11 @@ function lessonBar() {
   const mode = (name) => node("button", { type: "button", id: name, "aria-pressed": String(lesson.mode === name), onclick: () => lessonMode(name) }, say(name));
   return [
     control("lessonBack", "‹", "step back", () => goStop(lesson.at - 1, true)), range("lessonScrub", "steps", { min: 0, value: 0 }, (at) => goStop(at - 1, true)),
-    control("lessonNext", "›", "step", nextStop), control("", "↻", "play", () => showStop(), { class: "wide" }), node("output", { class: "count angle" }), angleSlider(),
-    node("select", { id: "lessonPlan", "aria-label": say("which plan"), onchange: (event) => { takeLesson(event.target.value); goStop(-1, true); } },
-      ...record.lessons.map((one) => node("option", { value: one.plan }, planOf(one.plan).title))),
+    control("lessonNext", "›", "step", nextStop), control("lessonPlay", "▶", "play", () => playLesson(!lesson.plays), { class: "wide", "data-sign": "▶", "data-key": "play" }), node("output", { class: "count angle" }), angleSlider(),
+    choice("which plan", record.lessons.map((one) => [one.plan, planOf(one.plan).title]), "", (plan) => { takeLesson(plan); goStop(-1, true); }, { id: "lessonPlan" }),
     mode("guess"), mode("lecture"), node("button", { type: "button", id: "link", class: "wide", onclick: copyLink }, say("copy link")),
+    button(say("film"), recordLesson, { class: "wide", disabled: !window.MediaRecorder?.isTypeSupported("video/webm"), title: say(window.MediaRecorder?.isTypeSupported("video/webm") ? "film of the plan" : "no film here") }),
   ];
-}
-
-function lessonTurned() {
-  forgetGuess();
-  showStop(true);
 }
 
 function lessonKeys() {
@@ -377,5 +398,5 @@ function drawMissing([id], values) {
   if (rounds) arc(other, second, sub(there, other)); else stroke(card, "missing", [step(there, 40, across(way)), step(there, -40, across(way))]);
   stroke(card, "gap", [near, there]);
   const { x, y, width, height } = card.svg.viewBox.baseVal, [x0, y0, x1, y1] = extentOf([[x, -y], [x + width, -y - height], ...[near, there].flatMap((z) => [sub(z, [9, 9]), add(z, [9, 9])])]);
-  card.svg.setAttribute("viewBox", `${x0} ${-y1} ${x1 - x0} ${y1 - y0}`);
+  lookAt(card.svg, [x0, -y1, x1 - x0, y1 - y0]);
 }

@@ -81,8 +81,12 @@ function turn(phi) {
   for (const watcher of machine.watchers) watcher();
 }
 
-function setGiven(name, value) {
+// In a hurry, while the hand moves it, what searches found stays, as long as the mechanism is there with it: they search when it rests.
+function setGiven(name, value, hurry = false) {
   if (!(name in machine.made)) throw new RangeError(`no given number ${name}`);
+  const before = hurry && found();
   machine.given = { ...machine.given, [name]: value };
+  if (before) machine.found = { ...before, given: machine.given };
+  if (before && notThere(parts(machine.phi))) Object.assign(machine, { now: null, found: { ...machine.found, courses: coursesOf(machine.given) } });
   for (const watcher of machine.watchers) watcher(name);
 }

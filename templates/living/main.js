@@ -19,15 +19,16 @@ function openSheet(number, quick = false) {
 const TABS = {
   draw: { place: "paper", bar: playerBar, follows: drawPointers, print: () => fit(true), open: (sheet) => { openSheet(sheet ?? leaf.sheet.sheet, true); unask(); showPlaying(); } },
   turn: { place: "stage", bar: stageBar, print: () => stage.cards.forEach((card) => drawCard(card, parts(machine.phi))),
-    follows: (changed) => { if (changed) { clearTimeout(stage.rests); stage.rests = setTimeout(openStage, REST_MS); } drawStage(); writeAddress(); },
+    follows: (changed) => { if (changed) { clearTimeout(stage.rests); stage.rests = setTimeout(() => { machine.found = machine.now = null; openStage(); }, REST_MS); } drawStage(); writeAddress(); },
     open: () => { $("panel").replaceChildren(...changePanel()); showEdits(); openStage(); } },
-  lesson: { place: "lesson", bar: lessonBar, follows: lessonTurned, print: handOut, open: (plan, at) => openLesson(plan, at) },
+  lesson: { place: "lesson", bar: lessonBar, follows: () => { forgetGuess(); showStop(true); }, print: handOut, open: (plan, at) => openLesson(plan, at) },
 };
 
 // A tab: "draw" with the number of a sheet, "turn", or the "lesson" of a plan from one of its stops on.
 function openTab(name, which, at) {
   pause();
   spin(false);
+  playLesson(false);
   for (const one of Object.values(TABS)) $(one.place).hidden = one !== TABS[name];
   $("panel").hidden = name === "lesson";
   document.body.classList.toggle("teaching", name === "lesson");
@@ -58,9 +59,8 @@ function onKey(event) {
 }
 
 async function start() {
-  const found = await unpacked($("record").textContent);
+  takeRecord(await unpacked($("record").textContent));
   $("record").remove();
-  takeRecord(found);
   for (const sheet of record.sheets) sheet.plans = new Set(sheet.frames.map((f) => f.plan));
   startMachine();
   const tab = (attributes, text, act) => node("button", { type: "button", role: "tab", ...attributes, onclick: act }, text);

@@ -1,6 +1,6 @@
 // Markers that run along the diagrams of a sheet with the crank, or with the cam.
 
-const pointers = { all: [] };
+let pointers = [];
 
 const senseOfTurn = () => record.motion?.sense ?? 1;
 const wholeTurn = () => record.motion?.period ?? 2 * Math.PI;
@@ -8,8 +8,8 @@ const angleTurned = () => mod(senseOfTurn() * (machine.phi - (record.motion?.sta
 const turnTo = (turned) => turn((record.motion?.start ?? 0) + senseOfTurn() * turned);
 
 // What each marker of a sheet needs: the points of its curve and how far along each is passed.
-function takeMarkers(sheet) {
-  pointers.all = (sheet.markers ?? []).map((marker) => {
+function markersOf(sheet) {
+  return (sheet.markers ?? []).map((marker) => {
     const g = sheet.marks.find((mark) => mark.id === marker.mark).geometry, points = g.polyline ?? g.line;
     if (marker.passes) return { ...marker, points, at: marker.passes.map(([angle]) => angle) };
     const heights = points.map((z) => plainCross(marker.along, sub(z, marker.from))), low = Math.min(...heights), high = Math.max(...heights);
@@ -19,9 +19,9 @@ function takeMarkers(sheet) {
 }
 
 function drawMarkers(sheet) {
-  takeMarkers(sheet);
-  $("sheet").insertAdjacentHTML("beforeend", `<g id="pointers">${'<g><line class="pointer"/><circle class="pointer dot" r="1.4"/></g>'.repeat(pointers.all.length)}</g>`);
-  $("turner").hidden = !pointers.all.length;
+  pointers = markersOf(sheet);
+  $("sheet").insertAdjacentHTML("beforeend", `<g id="pointers">${'<g><line class="pointer"/><circle class="pointer dot" r="1.4"/></g>'.repeat(pointers.length)}</g>`);
+  $("turner").hidden = !pointers.length;
   drawPointers();
 }
 
@@ -36,7 +36,7 @@ function placeOnCurve({ points, at, passes }, angle) {
 
 function drawPointers() {
   const turned = angleTurned();
-  pointers.all.forEach((marker, n) => {
+  pointers.forEach((marker, n) => {
     const angle = marker.of === "cam" ? mod(turned, 2 * Math.PI) : turned, z = placeOnCurve(marker, angle), element = $("pointers").children[n], [leg, dot] = element.children;
     element.toggleAttribute("hidden", !z);
     if (!z) return;
@@ -52,8 +52,7 @@ const angleSlider = () => range("", "crank angle", { class: "scrub angle", min: 
 function showAngle() {
   for (const one of document.querySelectorAll(".angle")) {
     if (one.matches("output")) { one.textContent = momentOf(machine.phi); continue; }
-    one.value = angleTurned() * 180 / Math.PI;
-    one.setAttribute("aria-valuetext", `${Math.round(one.value)}°`);
+    Object.assign(one, { value: angleTurned() * 180 / Math.PI, ariaValueText: `${Math.round(angleTurned() * 180 / Math.PI)}°` });
   }
 }
 

@@ -38,15 +38,11 @@ function takeFilm(view = "") {
 }
 
 function countStops() {
-  Object.assign($("scrub"), { max: film.stops.length, value: film.at + 1 });
   $("count").textContent = `${film.at + 1} / ${film.stops.length}`;
-  $("scrub").setAttribute("aria-valuetext", `${film.at + 1} / ${film.stops.length}`);
+  Object.assign($("scrub"), { max: film.stops.length, value: film.at + 1, ariaValueText: $("count").textContent });
 }
 
-const onPaper = (frame, [x, y]) => {
-  const w = [x / frame.mu[0], (frame.mirror ? -1 : 1) * y / frame.mu[1]], z = mul(cis(frame.turn), w);
-  return [frame.origin[0] + z[0], leaf.height - frame.origin[1] - z[1]];
-};
+const onPaper = (frame, z) => conj(sub(add(frame.origin, turnedBy(frame, z)), [0, leaf.height]));
 
 // What the hand does for one helper: the compass sweeps about its centre over the cut, the ruler's line is drawn.
 function strokeOf(helper, frame) {
@@ -136,12 +132,7 @@ function pause() {
   showPlaying();
 }
 
-function showPlaying() {
-  const button = $("play");
-  if (!button) return;
-  button.textContent = film.playing ? "❚❚" : "▶";
-  button.setAttribute("aria-label", say(film.playing ? "pause" : "play"));
-}
+const showPlaying = () => { if ($("play")) showRunning($("play"), film.playing); };
 
 function stepTo(n, quick = false) {
   pause();
@@ -157,15 +148,13 @@ function openView(name) {
   fitBox(boundsOf(leaf.sheet.marks.filter((m) => m.view === name)));
 }
 
-const viewList = () => node("div", {}, node("h3", {}, say("views of this sheet")), node("div", { class: "chips" },
-  ...viewsOf(leaf.sheet).map((name) => button(calledView(name), () => { openView(name); play(); }, { class: "chip" }))));
+const viewList = () => chips("views of this sheet", viewsOf(leaf.sheet).map((name) => button(calledView(name), () => { openView(name); play(); }, { class: "chip" })));
 
 function playerBar() {
-  return [control("", "‹", "step back", () => stepTo(film.at - 1, true)), control("play", "▶", "play", () => (film.playing ? pause() : play()), { class: "play" }),
+  return [control("", "‹", "step back", () => stepTo(film.at - 1, true)), control("play", "▶", "play", () => (film.playing ? pause() : play()), { class: "play", "data-sign": "▶", "data-key": "play" }),
     control("", "›", "step", () => stepTo(film.at + 1)), range("scrub", "steps", { min: 0, value: 0 }, (at) => stepTo(at - 1, true)), node("span", { class: "count", id: "count" }),
-    node("select", { id: "what", "aria-label": say("what is played"), onchange: (event) => { takeFilm(event.target.value); drawStop(-1); fit(); } }),
-    node("select", { "aria-label": say("speed"), onchange: (event) => { film.speed = Number(event.target.value); } },
-      ...[0.5, 1, 2, 4].map((s) => node("option", { value: s, selected: s === 1 }, `×${String(s).replace(".", decimal())}`)))];
+    choice("what is played", [], "", (view) => { takeFilm(view); drawStop(-1); fit(); }, { id: "what" }),
+    choice("speed", [0.5, 1, 2, 4].map((s) => [s, `×${String(s).replace(".", decimal())}`]), film.speed, (s) => { film.speed = Number(s); })];
 }
 
 const listFilms = () => $("what")?.replaceChildren(node("option", { value: "" }, say("the whole sheet")), ...viewsOf(leaf.sheet).map((name) => node("option", { value: name }, calledView(name))));

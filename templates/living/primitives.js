@@ -43,84 +43,20 @@ function unit(angle) {
   return cis(angle);
 }
 
-function linesMeet(p, u, q, v, det, way) {
-  if (way !== undefined && !Number.isNaN(way)) return step(p, way, u);
-  const [w, lost] = difference(q, p);
-  const turned = det === undefined || Number.isNaN(det) ? cross(u, v) : det;
-  if (Math.abs(plainCross(w, v)) > Math.abs(plainCross(w, u))) [p, u, v] = [q, v, u];
-  const t = turned === 0 ? NaN : (cross(w, v) + plainCross(lost, v)) / turned;
-  return step(p, t, u);
-}
-
 function halfChord(d, r1, r2) {
   if (Number.isNaN(d + r1 + r2)) return NaN;
   const [c, b, a] = [r1, r2, d].sort((x, y) => x - y);
   return Math.sqrt((a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))) / (2 * d);
 }
 
-function arcArc(c1, r1, c2, r2, side, height, distance, line) {
-  if (line !== undefined) return add(c1, mul([distance / 2, side * height], line));
-  const e = sub(c2, c1);
-  let d = size(e);
-  const u = [e[0] / d, e[1] / d];
-  if (height === undefined) height = halfChord(d, r1, r2);
-  if (distance !== undefined) d = distance;
-  const foot = (d + (r1 - r2) * (r1 + r2) / d) / 2;
-  return add(c1, mul([foot, side * height], u));
-}
-
-function arcLine(centre, radius, p, u, side, half) {
-  const [w, lost] = difference(p, centre);
-  const height = cross(u, w) + plainCross(u, lost);
-  if (half === undefined) half = Math.sqrt((radius - height) * (radius + height));
-  const along = side * half - (dot(u, w) + plainDot(u, lost));
-  return Math.abs(along) <= radius ? step(p, along, u) : add(centre, mul([side * half, height], u));
-}
-
-function tangentPoint(p, centre, radius, side) {
-  const e = sub(p, centre), d = size(e), cos = radius / d, sin = Math.sqrt((d - radius) * (d + radius)) / d;
-  return add(centre, scale(radius / d, mul([cos, -side * sin], e)));
-}
-
-function tangentDirection(p, centre, radius, side, length, distance) {
-  const e = sub(p, centre), d = size(e);
-  if (length === undefined || distance === undefined) [length, distance] = [Math.sqrt((d - radius) * (d + radius)), d];
-  return mul([length / distance, side * radius / distance], [e[0] / d, e[1] / d]);
-}
-
 // --- taken from the crank angle: digits.js ---------------------------------------------------------------------------------
-
-function pinDistance(phi, l1, ahead, pivot, fixed) {
-  const gap = gapOfArcs([l1, ahead, pivot, fixed], 0);
-  return gap === null ? NaN : Math.sqrt(-gap.at(phi));
-}
 
 function tangentLength(phi, l1, ahead, pivot, fixed, radius) {
   const gap = gapOfArcs([l1, ahead, pivot, fixed], radius);
   return gap === null ? NaN : Math.sqrt(-gap.at(phi));
 }
 
-function halfOfArcs(phi, l1, ahead, pivot, fixed, l2, l3) {
-  const span = [l1, ahead, pivot, fixed], gaps = gapsOfArcs(span, l2, l3);
-  if (gaps === null) return NaN;
-  const [p, q] = gaps;
-  if (q.touches && Math.abs(l2 - l3) <= 1e-15 * (l2 + l3 + size(pivot) + size(fixed))) return Math.abs(p.root(phi)) / 2;
-  if (p.touches || q.touches) return Math.abs(p.root(phi) * q.root(phi)) / pinDistance(phi, ...span) / 2;
-  return Math.sqrt(gapOfArcs(span, l2, l3).at(phi) * gapOfArcs(span, l2, -l3).at(phi) / gapOfArcs(span, 0).at(phi)) / 2;
-}
-
-function halfOfLine(phi, l1, ahead, length, pivot, through, guide) {
-  const gaps = gapsOfLine(l1, ahead, length, pivot, through, guide);
-  if (gaps === null) return NaN;
-  const [p, q] = gaps;
-  return p.touches || q.touches ? Math.abs(p.root(phi) * q.root(phi)) : Math.sqrt(p.at(phi) * q.at(phi));
-}
-
-function footOnGuide(at, through, guide) {
-  if (![...at, ...through, guide].every(Number.isFinite)) return NOWHERE;
-  const [above, cos, sin] = height(at, through, guide);
-  return [few(many(at[0]) + times(above, sin)), few(many(at[1]) - times(above, cos))];
-}
+const pinDistance = (...span) => tangentLength(...span, 0);
 
 // --- a triangle on three legs --------------------------------------------------------------------------------------------
 
@@ -207,20 +143,6 @@ function moved(k, u, amount, legs) {
 // Points among the numbers of legs that are told as one real number.
 const pointed = (legs) => legs.map((x, i) => (typeof x === "number" && [1, 2, 4].includes(i % 5) ? [x, 0] : x));
 
-function cornerOnLegs(k, u, ...numbers) {
-  const legs = pointed(numbers), [first, along] = solved(k, u, legs);
-  return add(first, mul(along, legs[14]));
-}
-
-function falseSide(k, u, amount, ...numbers) {
-  const legs = pointed(numbers);
-  [k, u] = moved(k, u, amount, legs);
-  const [does, p, d, length, corner] = legs.slice(5, 10);
-  if (does === CIRCLE) return plainCross(sub(p, k), mul(corner, u)) >= 0 ? 1 : -1;
-  if (does === LINE) return plainDot(d, mul(corner, u)) >= 0 ? 1 : -1;
-  return plainDot(sub(p, k), mul(u, cis(length))) >= 0 ? 1 : -1;
-}
-
 // How many of some ascending numbers are not greater than x, or less than x.
 const upTo = (numbers, x) => { let n = 0; while (n < numbers.length && numbers[n] <= x) n++; return n; };
 const before = (numbers, x) => { let n = 0; while (n < numbers.length && numbers[n] < x) n++; return n; };
@@ -241,8 +163,14 @@ function onCourse(phi, angles, values) {
 
 const NEAR = 1e-12;
 
-function read({ x, y, left, right, law }, t, side, period) {
-  const last = x[x.length - 1];
+// A cubic piece of a curve, between two of its points.
+function cubicPiece({ y, left, right }, k, h, s) {
+  const r = 1 - s;
+  return r * r * (y[k] * (1 + 2 * s) + h * s * left[k]) + s * s * (y[k + 1] * (1 + 2 * r) - h * r * right[k]);
+}
+
+function read(curve, t, side, period) {
+  const { x, y, law } = curve, last = x[x.length - 1];
   if (period) {
     t = mod(t - x[0], period) + x[0];
     if (side < 0) t = t - x[0] < NEAR ? last : t;
@@ -253,16 +181,14 @@ function read({ x, y, left, right, law }, t, side, period) {
   if (side >= 0 ? t >= last : t > last) return y[y.length - 1];
   if (side >= 0 ? t < x[0] : t <= x[0]) return y[0];
   const k = clip((side < 0 ? before(x, t) : upTo(x, t)) - 1, 0, x.length - 2), h = x[k + 1] - x[k];
-  const s = clip((t - x[k]) / (h > 0 ? h : 1), 0, 1), r = 1 - s;
-  if (law === "straight") return y[k] + s * (y[k + 1] - y[k]);
-  return r * r * (y[k] * (1 + 2 * s) + h * s * left[k]) + s * s * (y[k + 1] * (1 + 2 * r) - h * r * right[k]);
+  const s = clip((t - x[k]) / (h > 0 ? h : 1), 0, 1);
+  return law === "straight" ? y[k] + s * (y[k + 1] - y[k]) : cubicPiece(curve, k, h, s);
 }
 
-function ordinateOf({ x, y, left, right, law }, at) {
+function ordinateOf(curve, at) {
   if (Number.isNaN(at)) return NaN;
-  const k = clip(upTo(x, at) - 1, 0, x.length - 2), h = x[k + 1] - x[k], t = (at - x[k]) / h, s = 1 - t;
-  if (law === "straight") return s * y[k] + t * y[k + 1];
-  return s * s * (y[k] * (1 + 2 * t) + h * t * left[k]) + t * t * (y[k + 1] * (1 + 2 * s) - h * s * right[k]);
+  const { x, y, law } = curve, k = clip(upTo(x, at) - 1, 0, x.length - 2), h = x[k + 1] - x[k], t = (at - x[k]) / h;
+  return law === "straight" ? (1 - t) * y[k] + t * y[k + 1] : cubicPiece(curve, k, h, t);
 }
 
 function swung(u, sense, low, swing) {
@@ -270,26 +196,82 @@ function swung(u, sense, low, swing) {
   return clip((turn - spare) / swing, 0, 1);
 }
 
+// Each by its name; those that have one in this file, too, are used elsewhere.
 const PRIMITIVES = {
   "difference of products": differenceOfProducts,
   cross,
   dot,
   unit,
-  "lines meet": linesMeet,
-  "arc cuts arc": arcArc,
-  "arc cuts line": arcLine,
-  tangent: tangentPoint,
-  "tangent direction": tangentDirection,
+  "lines meet"(p, u, q, v, det, way) {
+    if (way !== undefined && !Number.isNaN(way)) return step(p, way, u);
+    const [w, lost] = difference(q, p);
+    const turned = det === undefined || Number.isNaN(det) ? cross(u, v) : det;
+    if (Math.abs(plainCross(w, v)) > Math.abs(plainCross(w, u))) [p, u, v] = [q, v, u];
+    const t = turned === 0 ? NaN : (cross(w, v) + plainCross(lost, v)) / turned;
+    return step(p, t, u);
+  },
+  "arc cuts arc"(c1, r1, c2, r2, side, height, distance, line) {
+    if (line !== undefined) return add(c1, mul([distance / 2, side * height], line));
+    const e = sub(c2, c1);
+    let d = size(e);
+    const u = [e[0] / d, e[1] / d];
+    if (height === undefined) height = halfChord(d, r1, r2);
+    if (distance !== undefined) d = distance;
+    const foot = (d + (r1 - r2) * (r1 + r2) / d) / 2;
+    return add(c1, mul([foot, side * height], u));
+  },
+  "arc cuts line"(centre, radius, p, u, side, half) {
+    const [w, lost] = difference(p, centre);
+    const height = cross(u, w) + plainCross(u, lost);
+    if (half === undefined) half = Math.sqrt((radius - height) * (radius + height));
+    const along = side * half - (dot(u, w) + plainDot(u, lost));
+    return Math.abs(along) <= radius ? step(p, along, u) : add(centre, mul([side * half, height], u));
+  },
+  tangent(p, centre, radius, side) {
+    const e = sub(p, centre), d = size(e), cos = radius / d, sin = Math.sqrt((d - radius) * (d + radius)) / d;
+    return add(centre, scale(radius / d, mul([cos, -side * sin], e)));
+  },
+  "tangent direction"(p, centre, radius, side, length, distance) {
+    const e = sub(p, centre), d = size(e);
+    if (length === undefined || distance === undefined) [length, distance] = [Math.sqrt((d - radius) * (d + radius)), d];
+    return mul([length / distance, side * radius / distance], [e[0] / d, e[1] / d]);
+  },
   "distance from the crank's point": pinDistance,
   "tangent from the crank's point": tangentLength,
-  "half-chord of two arcs": halfOfArcs,
-  "half-chord of arc and line": halfOfLine,
-  "foot on a guide": footOnGuide,
-  "corner of a triangle on three legs": cornerOnLegs,
+  "half-chord of two arcs"(phi, l1, ahead, pivot, fixed, l2, l3) {
+    const span = [l1, ahead, pivot, fixed], gaps = gapsOfArcs(span, l2, l3);
+    if (gaps === null) return NaN;
+    const [p, q] = gaps;
+    if (q.touches && Math.abs(l2 - l3) <= 1e-15 * (l2 + l3 + size(pivot) + size(fixed))) return Math.abs(p.root(phi)) / 2;
+    if (p.touches || q.touches) return Math.abs(p.root(phi) * q.root(phi)) / pinDistance(phi, ...span) / 2;
+    return Math.sqrt(gapOfArcs(span, l2, l3).at(phi) * gapOfArcs(span, l2, -l3).at(phi) / gapOfArcs(span, 0).at(phi)) / 2;
+  },
+  "half-chord of arc and line"(phi, l1, ahead, length, pivot, through, guide) {
+    const gaps = gapsOfLine(l1, ahead, length, pivot, through, guide);
+    if (gaps === null) return NaN;
+    const [p, q] = gaps;
+    return p.touches || q.touches ? Math.abs(p.root(phi) * q.root(phi)) : Math.sqrt(p.at(phi) * q.at(phi));
+  },
+  "foot on a guide"(at, through, guide) {
+    if (![...at, ...through, guide].every(Number.isFinite)) return NOWHERE;
+    const [above, cos, sin] = height(at, through, guide);
+    return [few(many(at[0]) + times(above, sin)), few(many(at[1]) - times(above, cos))];
+  },
+  "corner of a triangle on three legs"(k, u, ...numbers) {
+    const legs = pointed(numbers), [first, along] = solved(k, u, legs);
+    return add(first, mul(along, legs[14]));
+  },
   "direction of a triangle on three legs": (k, u, ...legs) => solved(k, u, pointed(legs))[1],
   "value on a followed course": onCourse,
   "false position": (k, u, amount, ...legs) => moved(k, u, amount, pointed(legs))[0],
-  "side of a false position": falseSide,
+  "side of a false position"(k, u, amount, ...numbers) {
+    const legs = pointed(numbers);
+    [k, u] = moved(k, u, amount, legs);
+    const [does, p, d, length, corner] = legs.slice(5, 10);
+    if (does === CIRCLE) return plainCross(sub(p, k), mul(corner, u)) >= 0 ? 1 : -1;
+    if (does === LINE) return plainDot(d, mul(corner, u)) >= 0 ? 1 : -1;
+    return plainDot(sub(p, k), mul(u, cis(length))) >= 0 ? 1 : -1;
+  },
   "fraction of a swing": swung,
   "ordinate of a diagram": (curve, at, ahead) => read(curve, at, ahead < 0 ? -1 : 1, 0),
   "ordinate of a periodic diagram": (curve, at, turns, side) => read(curve, at, Math.trunc(side), 2 * Math.PI * turns),

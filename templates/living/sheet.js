@@ -27,17 +27,17 @@ function look(style) {
   return `stroke-width="${width}"${pattern.length ? ` stroke-dasharray="${pattern.join(" ")}"` : ""}`;
 }
 
-function markText(x, y, height, angle, string, wide = 1) {
-  const turned = wide !== 1 ? ` transform="translate(${fixed(x)} ${fixed(y)}) rotate(${fixed(-angle * 180 / Math.PI)}) scale(${wide} 1) translate(${fixed(-x)} ${fixed(-y)})"` :
-    angle ? ` transform="rotate(${fixed(-angle * 180 / Math.PI)} ${fixed(x)} ${fixed(y)})"` : "";
-  return `x="${fixed(x)}" y="${fixed(y)}" font-size="${fixed(height / CAPITAL)}"${turned}>${plain(string)}`;
+// A mark as an element; where it is stands in `place`, or is set later.
+function markSvg(style, g, place = "") {
+  if (g.text) return `<text class="mark" font-size="${fixed(g.text.height / CAPITAL)}" ${place}>${plain(g.text.string)}</text>`;
+  return g.fill ? `<path class="mark fill" ${place}/>` : `<path class="mark" ${look(style)} ${place}/>`;
 }
 
-function markSvg(mark, n, height) {
-  const g = mark.geometry;
-  if (g.text) return `<text class="mark" data-n="${n}" ${markText(g.text.at[0], height - g.text.at[1], g.text.height, g.text.angle, g.text.string, g.text.wide)}</text>`;
-  if (g.fill) return `<path class="mark fill" data-n="${n}" d="${pathOf(g, height)}"/>`;
-  return `<path class="mark" data-n="${n}" ${look(mark.style)} d="${pathOf(g, height)}"/>`;
+// The attribute that says where a mark is, and what it says: letters are moved, turned and widened.
+function placeOf(g, height) {
+  if (!g.text) return ["d", pathOf(g, height)];
+  const { at: [x, y], angle, wide = 1 } = g.text;
+  return ["transform", `translate(${fixed(x)} ${fixed(height - y)})${angle ? ` rotate(${fixed(-angle * 180 / Math.PI)})` : ""}${wide === 1 ? "" : ` scale(${wide} 1)`}`];
 }
 
 const leaf = { sheet: null, elements: [], width: 0, height: 0, zoom: null };
@@ -51,35 +51,26 @@ function fitBox([x0, y0, x1, y1], pad = 12) {
 
 function drawSheet(sheet) {
   const svg = $("sheet"), [width, height] = sheet.size;
-  Object.assign(leaf, { sheet, width, height });
+  Object.assign(leaf, { sheet, width, height, outlines: null });
   svg.innerHTML = `<title>${plain(sheet.title)}</title><rect class="leaf" width="${width}" height="${height}"/><g id="marks">`
-    + sheet.marks.map((mark, n) => markSvg(mark, n, height)).join("") + '</g><g id="hand"></g>';
+    + sheet.marks.map(({ style, geometry }) => { const [name, text] = placeOf(geometry, height); return markSvg(style, geometry, `${name}="${text}"`); }).join("") + '</g><g id="hand"></g>';
   svg.setAttribute("aria-label", sheet.title);
   leaf.elements = [...svg.querySelectorAll("#marks > *")];
-  leaf.outlines = null;
+  byKeys(svg, leaf.elements, sheet.marks, askMark);
   drawMarkers(sheet);
 }
 
 const HIT = 9; // a click so near to a mark means it, pixels
 
-// Points along each mark that comes from a step, to find the one that is meant.
-function outlines(marks) {
-  return marks.flatMap((mark, n) => {
-    if (!mark.step) return [];
-    const g = mark.geometry;
-    if (g.text) {
-      const [x, y] = g.text.at, w = g.text.string.length * g.text.height * 0.6, h = g.text.height;
-      return [{ n, points: [[x, y + h / 2], [x + w, y + h / 2]] }];
-    }
-    const round = g.circle ?? g.arc;
-    if (!round) return [{ n, points: g.line ?? g.polyline ?? g.fill }];
-    const [from, to] = g.circle ? [0, 2 * Math.PI] : [g.arc.from, g.arc.to], many = 24;
-    return [{ n, points: Array.from({ length: many + 1 }, (_, i) => {
-      const t = from + (to - from) * i / many;
-      return [round.centre[0] + round.radius * Math.cos(t), round.centre[1] + round.radius * Math.sin(t)];
-    }) }];
-  });
+// Points along a shape: a letter's middle line, enough of an arc.
+function pointsAlong(g) {
+  if (g.text) { const [x, y] = g.text.at, w = g.text.string.length * g.text.height * 0.6, h = g.text.height / 2; return [[x, y + h], [x + w, y + h]]; }
+  const { centre, radius, from = 0, to = 2 * Math.PI } = g.circle ?? g.arc ?? {};
+  return centre ? spread(from, to, 25).map((t) => step(centre, radius, cis(t))) : g.line ?? g.polyline ?? g.fill;
 }
+
+// Marks that come from a step, to find the one that is meant.
+const outlines = (marks) => marks.flatMap((mark, n) => (mark.step ? [{ n, points: pointsAlong(mark.geometry) }] : []));
 
 function away([x, y], [ax, ay], [bx, by]) {
   const dx = bx - ax, dy = by - ay, t = clip(((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1), 0, 1);
@@ -105,12 +96,5 @@ const boundsOf = (marks) => extentOf(marks.flatMap(({ geometry: g }) => {
   return pointsOf(g).flatMap(([x, y]) => [[x - pad, y - pad], [x + pad, y + pad]]);
 }));
 
-function extentOf(points) {
-  const box = [Infinity, Infinity, -Infinity, -Infinity];
-  for (const [x, y] of points) {
-    if (Number.isFinite(x) && Number.isFinite(y)) {
-      box[0] = Math.min(box[0], x); box[1] = Math.min(box[1], y); box[2] = Math.max(box[2], x); box[3] = Math.max(box[3], y);
-    }
-  }
-  return box;
-}
+const extentOf = (points) => points.reduce((box, [x, y]) => (Number.isFinite(x + y) ? [Math.min(box[0], x), Math.min(box[1], y), Math.max(box[2], x), Math.max(box[3], y)] : box),
+  [Infinity, Infinity, -Infinity, -Infinity]);

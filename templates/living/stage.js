@@ -5,7 +5,7 @@ const stage = { cards: [], playing: false, seconds: 6, last: 0, vanes: false };
 // One view of each plan, at the highlighted position where there is one; of groups and their forces every view.
 function liveViews() {
   const all = record.sheets.flatMap((sheet) => (sheet.live ?? []).map((live) => ({ ...live, sheet }))), main = all.find((v) => v.plan === "positions");
-  const loaded = (view) => view.marks.some((m) => m.kind !== "text" && m.along.length === 1 && m.role === "vector"), kept = new Map();
+  const loaded = (view) => view.marks.some((m) => m.role === "vector" && m.kind !== "text" && m.along.length === 1), kept = new Map();
   for (const one of [...all.filter((v) => v.position === main?.position), ...all]) {
     const key = one.plan.startsWith("positions") || loaded(one) ? one.view : one.plan;
     if (!kept.has(key)) kept.set(key, one);
@@ -14,13 +14,15 @@ function liveViews() {
   return [...kept.values()].sort((a, b) => first(a) - first(b));
 }
 
+// A difference of a plan's points on the sheet, mm.
+function turnedBy(frame, [x, y], shrunk = 1) {
+  const w = [x / frame.mu[0] / shrunk, (frame.mirror ? -1 : 1) * y / frame.mu[1] / shrunk];
+  return frame.turn ? mul(cis(frame.turn), w) : w;
+}
+
 // Anchors of a mark and its direction on the sheet, mm, y upwards; distances are so many times smaller than there.
 function placer(values, shrunk = 1) {
   const number = (id) => taken(record.motion.all.results[id], values);
-  const turnedBy = (mark, [x, y]) => {
-    const w = [x / mark.mu[0] / shrunk, (mark.mirror ? -1 : 1) * y / mark.mu[1] / shrunk];
-    return mark.turn ? mul(cis(mark.turn), w) : w;
-  };
   const direction = (mark) => {
     if (!mark.along.length) return [1, 0];
     const ends = mark.along.map(number);
@@ -28,15 +30,14 @@ function placer(values, shrunk = 1) {
   };
   const known = new Map(); // many marks hang on one point
   const point = (mark, id) => {
-    if (!known.has(id)) known.set(id, add(mark.origin, turnedBy(mark, number(id))));
+    if (!known.has(id)) known.set(id, add(mark.origin, turnedBy(mark, number(id), shrunk)));
     return known.get(id);
   };
-  const place = (mark, id, other, share) => {
+  const at = (mark, [id, x, y, other, share, dx = 0, dy = 0], u) => {
     const a = point(mark, id);
-    return other ? step(a, share, sub(point(mark, other), a)) : a;
+    if (other === true) return add(a, mul([x / shrunk, y / shrunk], u)); // a length of the mechanism
+    return add(add(other ? step(a, share, sub(point(mark, other), a)) : a, mul([x, y], u)), [dx, dy]);
   };
-  const at = (mark, [id, x, y, other, share, dx = 0, dy = 0], u) => (other === true // a length of the mechanism
-    ? add(point(mark, id), mul([x / shrunk, y / shrunk], u)) : add(add(place(mark, id, other, share), mul([x, y], u)), [dx, dy]));
   return { direction, point, at, shrunk };
 }
 
@@ -52,17 +53,16 @@ function geometryOf(mark, placed) {
 const defined = (g) => pointsOf(g).every((z) => Number.isFinite(z[0]) && Number.isFinite(z[1]));
 
 function makeCard(live, pick = ask) {
-  const svg = svgNode("svg", { role: "img", "aria-label": live.view }), marks = live.marks.filter((m) => m.kind !== "path"), paths = live.marks.filter((m) => m.kind === "path");
-  svg.innerHTML = `<g class="paths"></g><g class="marks">${marks.map((mark) => (mark.kind === "text" ? `<text class="mark" font-size="${mark.height / CAPITAL}">${plain(mark.string.replace(`(${live.position})`, ""))}</text>`
-    : mark.kind === "fill" ? '<path class="mark fill"/>' : `<path class="mark" ${look(mark.style)}/>`)).join("")}</g><g class="over"></g>`;
+  const svg = svgNode("svg", { role: "group", tabindex: 0, "aria-label": live.view }), marks = live.marks.filter((m) => m.kind !== "path"), paths = live.marks.filter((m) => m.kind === "path");
+  svg.innerHTML = `<g class="paths"></g><g class="marks">${marks.map((mark) => markSvg(mark.style, { [mark.kind]: { ...mark, string: mark.string?.replace(`(${live.position})`, "") } })).join("")}</g><g class="over"></g>`;
   // What is said of the position that it is drawn for on the sheet does not hold in motion.
   const position = say("position {label}", { label: live.position }), from = live.view.toLowerCase().indexOf(position.toLowerCase());
   const name = from < 0 ? live.view : live.view.slice(0, from).replace(/[\s,(]+$/, "");
   const caption = node("figcaption", {}, name), card = { live, name, svg, marks, paths, caption, hidden: marks.map(() => false), drawn: marks.map(() => ""), seen: false, figure: node("figure", { class: "card" }, caption, svg) };
   card.ends = [...new Map(marks.filter((m) => m.kind !== "text" && m.role !== "text").flatMap((m) => m.at.map(([id]) => [id, m])))].map(([id, m]) => [m, id]);
-  card.elements = [...svg.querySelectorAll(".marks > *")];
-  card.over = svg.querySelector(".over");
-  card.sources = marks.map((mark) => live.sheet.marks.find((m) => m.id === mark.id));
+  const elements = [...svg.querySelectorAll(".marks > *")], sources = marks.map((mark) => live.sheet.marks.find((m) => m.id === mark.id));
+  Object.assign(card, { elements, sources, over: svg.querySelector(".over") });
+  byKeys(svg, card.elements, card.sources.map((one) => one && { ...one, position: "" }), (mark) => pick(mark.step));
   svg.addEventListener("click", (event) => {
     if (event.target.closest(".handle")) return;
     const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse()), placed = placer(parts(machine.phi), card.shrunk);
@@ -83,7 +83,7 @@ function heldBy(card, placed) {
 // A polygon of forces or a group keeps to the middle of its card; a plan with a pole keeps its pole.
 function centre(card, placed) {
   const [x0, y0, x1, y1] = extentOf(heldBy(card, placed)), [w, h] = add(roomOf(card), [30, 24]);
-  if (x0 <= x1) card.svg.setAttribute("viewBox", `${(x0 + x1 - w) / 2} ${-(y0 + y1 + h) / 2} ${w} ${h}`);
+  if (x0 <= x1) lookAt(card.svg, [(x0 + x1 - w) / 2, -(y0 + y1 + h) / 2, w, h]);
 }
 
 function scaleWords(mu, plan) {
@@ -146,25 +146,25 @@ function frameCard(card, turn = stage.turn) {
   card.svg.querySelector(".paths").innerHTML = card.paths.map((path) => {
     const points = stage.fine.map((one) => placer(one, card.shrunk).point(path, path.of)), there = points.filter((z) => Number.isFinite(z[0]));
     const closed = there.length === points.length && record.motion.period > 6;
-    return there.length ? `<path class="mark" ${look(path.style)} d="${polyPath(there, 0, closed)}"/>` : "";
+    return there.length ? `<path class="mark ${path.role}" ${look(path.style)} d="${polyPath(there, 0, closed)}"/>` : "";
   }).join("");
 }
 
 // At an angle at which a plan has no room in its common scale it is as small as it must be, which is told.
-function follow(card, values) {
+function keepInSight(card, values) {
   const [x0, y0, x1, y1] = card.box, scaled = (shrunk) => scaleWords(card.marks[0].mu[0] * shrunk, card.live.plan);
   card.off = x0 < x1 && heldBy(card, placer(values, card.usual)).some(([x, y]) => x < x0 - 1 || y < y0 - 1 || x > x1 + 1 || y > y1 + 1);
   card.shrunk = card.centred || card.off ? Math.max(card.usual, shrinking(card, [values])) : card.usual;
   const told = [`${card.name}, ${scaled(card.usual)}`, card.shrunk > card.usual ? `; ${say("here {mu}", { mu: scaled(card.shrunk) })}` : ""];
   if (String(card.told) !== String(told)) card.caption.replaceChildren(told[0], node("b", {}, told[1]));
   card.told = told;
-  if (x0 < x1 && !card.off) card.svg.setAttribute("viewBox", `${x0 - 11} ${-y1 - 9} ${x1 - x0 + 22} ${y1 - y0 + 18}`);
+  if (x0 < x1 && !card.off) lookAt(card.svg, [x0 - 11, -y1 - 9, x1 - x0 + 22, y1 - y0 + 18]);
 }
 
 // Draw the marks of a card; those that have no place are hidden.
 function drawCard(card, values) {
   if (!card.framed) frameCard(card);
-  if (!card.room) follow(card, values);
+  if (!card.room) keepInSight(card, values);
   const placed = placer(values, card.shrunk);
   if (card.centred || card.off) centre(card, placed);
   card.marks.forEach((mark, n) => {
@@ -173,8 +173,8 @@ function drawCard(card, values) {
     if (card.hidden[n] === there) { element.setAttribute("visibility", there ? "visible" : "hidden"); card.hidden[n] = !there; }
     if (!there) return;
     // A letter is moved, which costs less than setting it anew; what stays is not written again.
-    const drawn = mark.kind === "text" ? `translate(${fixed(g.text.at[0])} ${fixed(-g.text.at[1])})` : pathOf(g, 0);
-    if (card.drawn[n] !== drawn) element.setAttribute(mark.kind === "text" ? "transform" : "d", card.drawn[n] = drawn);
+    const [name, drawn] = placeOf(g, 0);
+    if (card.drawn[n] !== drawn) element.setAttribute(name, card.drawn[n] = drawn);
   });
 }
 
@@ -231,6 +231,13 @@ function fitCards() {
   const best = Math.max(...wide), fits = best >= LEAST * rem;
   place.style.setProperty("--columns", fits ? `repeat(${wide.indexOf(best) + 1}, 1fr)` : "");
   place.style.setProperty("--high", fits ? `${best * SHAPE}px` : "");
+  resized();
+}
+
+// Cards of another size are drawn anew.
+function resized() {
+  for (const card of stage.cards) card.svg.pixel = 0;
+  drawStage();
 }
 
 function openStage() {
@@ -244,28 +251,27 @@ function openStage() {
     }, { root: $("stage") });
     for (const card of stage.cards) {
       watch.observe(card.figure);
-      card.figure.append(control("", "⤢", "this card large", () => { card.figure.classList.toggle("large"); card.figure.scrollIntoView(); }, { class: "enlarge" }));
+      card.figure.append(control("", "⤢", "this card large", () => { card.figure.classList.toggle("large"); card.figure.scrollIntoView(); resized(); }, { class: "enlarge" }));
     }
     new ResizeObserver(fitCards).observe($("stage"));
-    stage.grip = makeGrip(stage.cards[0]);
+    const grip = makeGrip(stage.cards[0]), points = makePoints(stage.cards[0]);
+    stage.grip = (placed) => { grip(placed); points(placed); };
   }
   takeTurn();
   drawStage();
 }
 
 function stageBar() {
-  const vanes = node("button", { type: "button", "aria-pressed": String(stage.vanes), onclick: () => { stage.vanes = !stage.vanes; vanes.setAttribute("aria-pressed", String(stage.vanes)); drawStage(); } }, say("velocities"));
+  const vanes = node("button", { type: "button", "aria-pressed": String(stage.vanes), onclick: () => { stage.vanes = !stage.vanes; $("stage").classList.toggle("vanes", stage.vanes); vanes.setAttribute("aria-pressed", String(stage.vanes)); drawStage(); } }, say("velocities"));
   return [spinner("▶", "play"), angleSlider(), node("output", { class: "count angle" }), vanes,
-    node("select", { "aria-label": say("speed"), onchange: (event) => { stage.seconds = Number(event.target.value); } },
-      ...[12, 6, 3].map((s) => node("option", { value: s, selected: s === stage.seconds }, say("a turn in {s} s", { s }))))];
+    choice("speed", [12, 6, 3].map((s) => [s, say("a turn in {s} s", { s })]), stage.seconds, (s) => { stage.seconds = Number(s); })];
 }
+
+const showRunning = (one, on) => { one.textContent = on ? "❚❚" : one.dataset.sign; one.setAttribute("aria-label", say(on ? "pause" : one.dataset.key)); };
 
 function spin(on) {
   stage.playing = on;
-  for (const button of document.querySelectorAll(".spin")) {
-    button.textContent = on ? "❚❚" : button.dataset.sign;
-    button.setAttribute("aria-label", say(on ? "pause" : button.dataset.key));
-  }
+  for (const one of document.querySelectorAll(".spin")) showRunning(one, on);
   if (!on) return;
   stage.last = performance.now();
   const frame = (now) => {

@@ -32,35 +32,25 @@ function argumentChip(arg, when, plan) {
   return node("span", { class: "chip given", title: arg.source ?? arg.name, ".innerHTML": `${name} ${text}` });
 }
 
+// Buttons under a heading, nothing where there are none.
+const chips = (title, some) => (some.length ? [node("h3", {}, say(title)), node("div", { class: "chips" }, ...some)] : []);
+
+const FOLLOW = 12; // so many of the steps that follow are named
+
 function tellStep(id, when) {
-  const s = stepOf(id), plan = planOf(s.plan), formula = s.formula, moment = momentOf(when);
-  const found = [node("h2", { ".innerHTML": valued(id, when) }), node("p", { class: "where" }, plan.title, ...(moment ? [", ", node("span", { "data-moment": true }, moment)] : [])),
-    node("p", { class: "sentence", ".innerHTML": lettered(toldIn(s.sentence, when)) })];
-  if (formula) {
-    const numbers = toldIn(formula.numbers, when);
-    found.push(node("div", { class: "formula", ".innerHTML": mathml(formula.symbols) + (numbers ? mathml(`= ${numbers}`) : "") }));
-  }
-  const args = s.args.filter((a) => a.name !== "constant" || a.step !== undefined);
-  if (args.length) found.push(node("h3", {}, say("made of")), node("div", { class: "chips" }, ...args.map((a) => argumentChip(a, when, plan))));
-  const next = [...new Set(children.get(id) ?? [])];
-  if (next.length) {
-    found.push(node("h3", {}, say("from it follow")), node("div", { class: "chips" }, ...next.slice(0, 12).map((one) => chip(one, when))));
-    if (next.length > 12) found.push(node("p", { class: "hint" }, say("and {n} more", { n: next.length - 12 })));
-  }
-  return found;
+  const s = stepOf(id), plan = planOf(s.plan), moment = momentOf(when), numbers = toldIn(s.formula?.numbers, when), next = [...new Set(children.get(id) ?? [])];
+  return [node("h2", { ".innerHTML": valued(id, when) }), node("p", { class: "where" }, plan.title, ...(moment ? [", ", node("span", { "data-moment": true }, moment)] : [])),
+    node("p", { class: "sentence", ".innerHTML": lettered(toldIn(s.sentence, when)) }),
+    ...(s.formula ? [node("div", { class: "formula", ".innerHTML": mathml(s.formula.symbols) + (numbers ? mathml(`= ${numbers}`) : "") })] : []),
+    ...chips("made of", s.args.filter((a) => a.name !== "constant" || a.step !== undefined).map((a) => argumentChip(a, when, plan))),
+    ...chips("from it follow", next.slice(0, FOLLOW).map((one) => chip(one, when))),
+    ...(next.length > FOLLOW ? [node("p", { class: "hint" }, say("and {n} more", { n: next.length - FOLLOW }))] : [])];
 }
 
 // The whole way from the given numbers to a step.
 function tellWhy(id, when) {
-  const list = node("ol", { class: "why" }), told = new Set();
-  for (const one of chain(id)) {
-    for (const arg of stepOf(one).args) {
-      if (arg.step === undefined && arg.name !== "constant" && !told.has(arg.name)) {
-        told.add(arg.name);
-        list.append(node("li", {}, argumentChip(arg, when, planOf(stepOf(one).plan)), ` ${arg.source ?? say("given")}`));
-      }
-    }
-    list.append(node("li", {}, chip(one, when), node("span", { ".innerHTML": ` ${lettered(toldIn(stepOf(one).sentence, when))}` })));
-  }
-  return node("details", {}, node("summary", {}, say("why: back to the givens")), list);
+  const told = new Set(), given = (one) => stepOf(one).args.filter((arg) => arg.step === undefined && arg.name !== "constant" && !told.has(arg.name) && told.add(arg.name));
+  return node("details", {}, node("summary", {}, say("why: back to the givens")), node("ol", { class: "why" }, ...chain(id).flatMap((one) => [
+    ...given(one).map((arg) => node("li", {}, argumentChip(arg, when, planOf(stepOf(one).plan)), ` ${arg.source ?? say("given")}`)),
+    node("li", {}, chip(one, when), node("span", { ".innerHTML": ` ${lettered(toldIn(stepOf(one).sentence, when))}` }))])));
 }

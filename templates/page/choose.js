@@ -33,7 +33,8 @@ export async function showChoice(open) {
 
 function card(task, take) {
   const img = node("img", { alt: "", loading: "lazy" });
-  watchPicture(img, task.scheme);
+  img.dataset.name = task.scheme;
+  if (pictures.has(task.scheme)) picture(img, pictures.get(task.scheme)); else sight.observe(img);
   const many = task.variants.length > 1;
   const names = task.variants.map((v) => button(many ? v.said.replace(/^.*?(\d+)$/, "$1") : v.said, () => take(v.name), { class: "chip", title: v.said, "aria-label": `${task.title}, ${v.said}` }));
   const cipher = node("input", { type: "text", placeholder: say("your cipher"), "aria-label": `${task.title}: ${say("your cipher")}`, maxlength: 40 });
@@ -44,30 +45,19 @@ function card(task, take) {
 }
 
 // Pictures are made when they come into sight, one after another, until something is opened.
-const waiting = [], work = latest();
-let busy = false;
+const work = latest();
+let queue = Promise.resolve();
 const sight = new IntersectionObserver((all) => {
-  for (const { target, isIntersecting } of all) if (isIntersecting) { sight.unobserve(target); waiting.push(target); next(); }
+  for (const { target, isIntersecting } of all) if (isIntersecting) { sight.unobserve(target); queue = queue.then(() => draw(target)); }
 }, { rootMargin: "100px" });
 
-export function leaveChoice() {
-  waiting.length = 0;
-  work.stop();
-}
+export const leaveChoice = () => work.stop();
 
-function watchPicture(img, name) {
-  img.dataset.name = name;
-  if (pictures.has(name)) picture(img, pictures.get(name)); else sight.observe(img);
-}
-
-async function next() {
-  if (busy || !waiting.length) return;
-  busy = true;
-  const img = waiting.shift(), { name } = img.dataset;
+async function draw(img) {
+  const { name } = img.dataset;
+  if ($("choose").hidden || !img.isConnected) return;
   try {
     pictures.set(name, (await ask("scheme", { project: name }, { signal: work.begin() })).svg);
     picture(img, pictures.get(name));
   } catch { /* a card without a picture */ }
-  busy = false;
-  next();
 }

@@ -19,6 +19,10 @@ export function node(name, attributes = {}, ...inside) {
 
 export const button = (text, act, attributes = {}) => node("button", { type: "button", ...attributes, onclick: act }, text);
 
+// A list to choose from, of pairs of a value and its text.
+export const choice = (key, options, chosen, act, more = {}) => node("select", { "aria-label": say(key), ...more, onchange: (event) => act(event.target.value) },
+  ...options.map(([value, text]) => node("option", { value, selected: value === chosen }, text)));
+
 // A picture from its bytes; the one it takes the place of is let go.
 export function picture(img, data, type = "image/svg+xml") {
   if (img.src.startsWith("blob:")) URL.revokeObjectURL(img.src);
@@ -49,21 +53,18 @@ export function dropZone(text, accept, take, folder = false) {
   return zone;
 }
 
-// Files that were dropped, those in folders too, each with its path.
+// Files of an entry that was dropped, those in folders too, each with its path.
+async function filesOf(entry, path = "") {
+  const told = (ask) => new Promise((done, fail) => { ask(done, fail); });
+  if (entry.isFile) return [Object.assign(await told((done, fail) => entry.file(done, fail)), { path: path + entry.name })];
+  const reader = entry.createReader(), found = [];
+  for (let some; (some = await told((done, fail) => reader.readEntries(done, fail))).length;) for (const one of some) found.push(...await filesOf(one, `${path}${entry.name}/`));
+  return found;
+}
+
 async function dropped(data) {
-  const found = [], entries = [...data.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
-  const walk = async (entry, path) => {
-    if (entry.isFile) {
-      const file = await new Promise((done, fail) => { entry.file(done, fail); });
-      file.path = path + entry.name;
-      found.push(file);
-      return;
-    }
-    const reader = entry.createReader();
-    for (let some; (some = await new Promise((done, fail) => { reader.readEntries(done, fail); })).length;) for (const one of some) await walk(one, `${path}${entry.name}/`);
-  };
-  for (const entry of entries) await walk(entry, "");
-  return entries.length ? found : [...data.files];
+  const entries = [...data.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
+  return entries.length ? (await Promise.all(entries.map((one) => filesOf(one)))).flat() : [...data.files];
 }
 
 // Pictures of what takes some time, by the share of it that is over; a later one of the same owner takes its place.

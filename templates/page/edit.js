@@ -93,7 +93,7 @@ function tellKey() {
   };
   const others = rows.filter((one) => !there.has(one.name) && !(one.name in keys));
   $("key").replaceChildren(
-    ...(row ? [node("h3", {}, table ? `${table}.${row.name}` : row.name), node("p", {}, plain(row.takes), row.units.length ? ` · ${row.units.join(", ")}` : ""), node("p", { class: "hint" }, plain(row.means))] : [node("h3", {}, table ? `[${table}]` : "")]),
+    ...(row ? [node("h3", {}, table ? `${table}.${row.name}` : row.name), node("p", {}, plain(row.takes), row.units.length ? ` · ${row.units.join(", ")}` : ""), node("p", { class: "hint" }, plain(row.means))] : [table && node("h3", {}, `[${table}]`)].filter(Boolean)),
     ...(others.length && table ? [node("details", { open: !row }, node("summary", {}, say("keys that may be added")), node("div", { class: "chips" }, ...others.map((one) => button(one.name, () => insert(one), { class: "chip", title: `${plain(one.takes)}; ${plain(one.means)}` }))))] : []));
 }
 

@@ -2,7 +2,7 @@
 
 import { leaveChoice, showChoice } from "./choose.js";
 import { offerSheets, startCheck } from "./check.js";
-import { $, button, node, say, speak } from "./dom.js";
+import { $, button, choice, node, say, speak } from "./dom.js";
 import { aborted, ask, languages, latest, told } from "./door.js";
 import { showText, startEditor, tell, tellWaiting } from "./edit.js";
 import { change, project } from "./project.js";
@@ -10,7 +10,7 @@ import { drawSheets, startSheets, stopSheets } from "./sheets.js";
 import { startTake } from "./take.js";
 
 const TABS = ["choose", "sheets", "turn", "file", "take", "check"];
-const page = { tab: "choose", sound: false, living: null, warnings: [], corrected: null, followed: false };
+const page = { tab: "choose", sound: false, living: null, warnings: [], corrected: null, followed: false, at: "" };
 const checking = latest();
 
 // A tab is a place of the browser's history: its back button leads to the one before.
@@ -31,7 +31,7 @@ function showTabs() {
 }
 
 function opened({ warnings = [], corrected = null }) {
-  Object.assign(page, { warnings, corrected, living: null });
+  Object.assign(page, { warnings, corrected, living: null, at: "" });
   tell([], [], warnings, corrected);
   showTabs();
   openTab("sheets");
@@ -70,7 +70,7 @@ function showLiving() {
   if (!page.sound || page.living === project.text) return;
   page.living = project.text;
   const fields = { text: project.text, name: project.name, lang: languages.chosen };
-  const form = node("form", { action: "living", method: "post", target: "living", enctype: "multipart/form-data", hidden: true }, ...Object.entries(fields).map(([name, value]) => node("textarea", { name }, value)));
+  const form = node("form", { action: `living${page.at}`, method: "post", target: "living", enctype: "multipart/form-data", hidden: true }, ...Object.entries(fields).map(([name, value]) => node("textarea", { name }, value)));
   const frame = $("living"), fresh = frame.cloneNode(); // another one: what it showed is no place of the browser's history
   fresh.onload = () => { $("waits").hidden = true; };
   frame.replaceWith(fresh);
@@ -84,14 +84,13 @@ function showLiving() {
 async function startWords() {
   speak(await told("words"));
   document.documentElement.lang = say("language");
-  $("lang").setAttribute("aria-label", say("tab language"));
-  $("lang").replaceChildren(...[["", say("language of the task")], ["ru", "Русский"], ["uk", "Українська"], ["en", "English"]].map(([value, name]) => node("option", { value, selected: value === languages.chosen }, name)));
+  $("lang").replaceWith(choice("tab language", [["", say("language of the task")], ["ru", "Русский"], ["uk", "Українська"], ["en", "English"]], languages.chosen,
+    (lang) => { localStorage.setItem("lang", lang); location.reload(); }, { id: "lang" }));
   $("living").title = say("tab turn");
 }
 
 async function start() {
   await startWords();
-  $("lang").onchange = () => { localStorage.setItem("lang", $("lang").value); location.reload(); };
   await startEditor();
   startSheets();
   startTake();
@@ -99,7 +98,9 @@ async function start() {
   project.watchers.push(follow);
   addEventListener("popstate", ({ state }) => openTab(TABS.includes(state) ? state : "choose", true));
   addEventListener("message", ({ source, data }) => {
-    if (source === $("living").contentWindow && typeof data?.file === "string" && data.file.length < 2e6 && data.file !== project.text) change(data.file, "living");
+    if (source !== $("living").contentWindow) return;
+    if (/^#[\w=&.%+-]{1,300}$/.test(data?.at)) page.at = data.at;
+    if (typeof data?.file === "string" && data.file.length < 2e6 && data.file !== project.text) change(data.file, "living");
   });
   for (const kind of ["dragover", "drop"]) addEventListener(kind, (event) => event.preventDefault());
   showTabs();

@@ -118,3 +118,55 @@ def test_the_lesson_on_paper(tmp_path):
         assert x < 0 < 841 < x + width
         assert y < 0 < 594 < y + height
         assert page.said == []
+
+
+PRESSED = """(key) => document.activeElement.dispatchEvent(new KeyboardEvent("keydown", {
+  key, bubbles: true, cancelable: true }))"""
+
+
+@javascript.browser
+def test_marks_by_keyboard(tmp_path):
+    """Arrows go from the drawing over the steps in sight, each called by its name; Enter asks; in a lesson it goes to the stop."""
+    path = tmp_path / "page.html"
+    path.write_text(made("lugansk/shaper"), encoding="utf-8")
+    with browser(tmp_path / "profile") as page:
+        page.open(path.as_uri())
+        page.until("!!document.querySelector('html[data-ready]')")
+        page.now("$('sheet').focus()")
+        page.now(f"[1, 2, 3].forEach(() => ({PRESSED})('ArrowDown'))")
+        there = page.now("leaf.elements.indexOf(document.activeElement)")
+        step = page.now(f"leaf.sheet.marks[{there}].step")
+        assert page.now("document.activeElement.ariaLabel").startswith(page.now(f"nameOf('{step}')"))
+        page.now(f"({PRESSED})('Enter')")
+        assert page.now("asked.id") == step
+        page.now(f"({PRESSED})('ArrowUp')")
+        assert page.now("leaf.elements.indexOf(document.activeElement)") < there
+        page.now("tmm.open('lesson', 'velocities', 3)")
+        page.now("lesson.cards[1].svg.focus()")
+        page.now(f"({PRESSED})('ArrowUp')")  # the first one, there is none before
+        assert page.now("lesson.cards[1].elements.indexOf(document.activeElement) >= 0")
+        undrawn = "lesson.cards[1].elements.filter((one) => one.matches('.undrawn') && one === document.activeElement).length"
+        for _ in range(8):
+            page.now(f"({PRESSED})('ArrowDown')")
+            assert page.now(undrawn) == 0
+        page.now(f"({PRESSED})('Enter')")
+        step = page.now("lesson.told.stops[lesson.at].step")
+        assert page.now("document.activeElement.ariaLabel ?? ''") in ("", page.now(f"nameOf('{step}')"))
+        assert page.said == []
+
+
+@javascript.browser
+def test_a_lesson_plays_and_is_filmed(tmp_path):
+    """Up to its last stop, by itself; the film is one of the browser, and as long as that."""
+    path = tmp_path / "page.html"
+    path.write_text(made("lugansk/shaper").replace("const STOP_MS = 4000", "const STOP_MS = 300"), encoding="utf-8")
+    with browser(tmp_path / "profile") as page:
+        page.open(f"{path.as_uri()}#plan=velocities&step=4&phi=126")
+        page.until("!!document.querySelector('html[data-ready]')")
+        page.now("playLesson(true)")
+        page.until("!lesson.plays && lesson.at === lesson.told.stops.length - 1")
+        page.now("window.kept = []; HTMLAnchorElement.prototype.click = function () { kept.push(this.download); }")
+        page.now("void recordLesson()")
+        page.until("kept.length", seconds=60)
+        assert page.now("kept[0]") == "velocities.webm"
+        assert page.now("lesson.at === lesson.told.stops.length - 1")

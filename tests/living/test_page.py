@@ -77,6 +77,15 @@ def test_every_module_stands_in_the_page():
     assert {p.stem for p in template("living").glob("*.js")} == set(MODULES)
 
 
+def test_no_name_is_defined_twice():
+    """The modules stand in one script, where a second function of a name would take the place of the first without a word."""
+    texts = [template(f"living/{name}.js").read_text(encoding="utf-8") for name in ("../page/dom", "../page/zoom", *MODULES)]
+    defined = re.compile(r"^(?:export )?(?:async )?(?:function\*?|const|let|class) (\w+)", re.M)
+    names = [name for text in texts for name in defined.findall(text)]
+    assert len(names) > 300
+    assert sorted(names) == sorted(set(names))
+
+
 def test_every_word_that_a_module_asks_for_is_told():
     words = living.page_words() | living.lesson_words()
     texts = [template(f"living/{name}.js").read_text(encoding="utf-8") for name in MODULES]
@@ -264,8 +273,7 @@ def test_a_slider_ends_where_the_mechanism_does(tmp_path):
 
 MARKED = javascript.modules(*NUMBERS, "markers") + """
 const result = ({ sheet, angles }) => {
-  takeMarkers(sheet);
-  return pointers.all.map((marker) => angles.map((angle) => placeOnCurve(marker, angle)));
+  return markersOf(sheet).map((marker) => angles.map((angle) => placeOnCurve(marker, angle)));
 };
 """
 
@@ -543,3 +551,100 @@ def test_a_page_that_would_be_empty_is_not_written(tmp_path, monkeypatch, capsys
     assert run(["page", "pg.toml", "-o", "pg.html", "--lang", "en"]) == 1
     assert "reactions grow beyond all bounds" in capsys.readouterr().err
     assert [p.name for p in tmp_path.iterdir()] == ["pg.toml"]
+
+
+@javascript.browser
+def test_a_fixed_point_is_dragged(tmp_path):
+    """Its given numbers follow the finger, to a millimetre; the sliders show them; it can be undone."""
+    path = tmp_path / "page.html"
+    path.write_text(made("lugansk/shaper"), encoding="utf-8")
+    with browser(tmp_path / "profile") as opened:
+        opened.open(path.as_uri())
+        opened.until("window.tmm?.ready")
+        opened.now("tmm.open('turn')")
+        x, y, pixel = opened.now("""(() => {
+          const grip = [...document.querySelectorAll('.handle')].find((one) => one.ariaLabel.endsWith(': C'));
+          grip.scrollIntoView({ block: "center" });
+          const box = grip.children[0].getBoundingClientRect(), { shrunk, svg, marks } = stage.cards[0];
+          return [box.x + box.width / 2, box.y + box.height / 2, marks[0].mu[0] * shrunk / svg.getScreenCTM().a];
+        })()""")
+        for kind, dx, dy in (("mousePressed", 0, 0), ("mouseMoved", 16, 24), ("mouseReleased", 16, 24)):
+            opened("Input.dispatchMouseEvent", type=kind, x=x + dx, y=y + dy, button="left", buttons=1, clickCount=1)
+        there = opened.now("machine.given['points.C']")
+        assert there == pytest.approx([16 * pixel, -0.26 - 24 * pixel], abs=0.0015)
+        assert there == [round(one, 3) for one in there]
+        assert opened.now("changed().map((g) => g.name)") == ["points.C"]
+        opened.now("undo()")
+        assert opened.now("machine.given['points.C']") == [0, -0.26]
+        assert opened.said == []
+
+
+@javascript.browser
+def test_sliders_are_called_by_their_letters(tmp_path):
+    path = tmp_path / "page.html"
+    path.write_text(made("lugansk/shaper"), encoding="utf-8")
+    with browser(tmp_path / "profile") as opened:
+        opened.open(path.as_uri())
+        opened.until("window.tmm?.ready")
+        opened.now("tmm.open('turn')")
+        names = opened.now("[...document.querySelectorAll('.slide span')].map((one) => one.textContent)")
+        assert names[0] == "lAB"
+        assert all(names)
+
+
+@javascript.browser
+def test_the_hodograph_of_the_crank_pin_is_a_circle(tmp_path):
+    """About the pole, with the velocity of the pin as its radius, in the scale of its card; every vector from a pole has one."""
+    path = tmp_path / "page.html"
+    path.write_text(made("lugansk/shaper"), encoding="utf-8")
+    with browser(tmp_path / "profile") as opened:
+        opened.open(path.as_uri())
+        opened.until("window.tmm?.ready")
+        opened.now("tmm.open('turn')")
+        card = "stage.cards.find((one) => one.live.plan === 'velocities')"
+        assert {"velocities/b", "velocities/d"} <= set(opened.now(f"{card}.paths.map((one) => one.of)"))
+        d, origin, mu = opened.now(f"""(() => {{
+          const card = {card};
+          card.figure.scrollIntoView();
+          drawCard(card, parts(1));
+          const n = card.paths.findIndex((one) => one.of === "velocities/b"), {{ origin, mu }} = card.paths[n];
+          return [card.svg.querySelectorAll(".paths path")[n].getAttribute("d"), origin, mu[0] * card.shrunk];
+        }})()""")
+        points = np.array(re.findall(r"(-?[\d.]+) (-?[\d.]+)", d), dtype=float) * (1, -1)
+        radii = np.hypot(*(points - origin).T)
+        assert len(points) > 100
+        assert radii == pytest.approx(2 * np.pi * 1.2 * 0.08 / mu, abs=0.002)
+
+
+HURRIED = """(async () => {
+  tmm.open("turn");
+  const input = document.querySelector(".slide input"), own = Number(input.value), far = [];
+  const exactly = () => { Object.assign(machine, { found: null, now: null }); return tmm.at(machine.phi); };
+  const parted = (all, names) => names.flatMap((id) => [all[id]].flat());
+  const off = (some, all, names) => Math.max(...parted(some, names).map((x, i) => Math.abs(x - parted(all, names)[i])));
+  for (const share of [0.02, -0.03, 0.04]) {
+    input.value = own + share * (input.max - input.min);
+    input.dispatchEvent(new Event("input"));
+    const { given, found, now } = machine, hurried = tmm.at(machine.phi);
+    const names = Object.keys(hurried).filter((id) => /^(positions|velocities)\\/\\S+$/.test(id));
+    far.push(off(hurried, exactly(), names));
+    Object.assign(machine, { given, found, now });
+  }
+  await new Promise((done) => setTimeout(done, 2 * REST_MS));
+  const rested = tmm.at(machine.phi), names = Object.keys(rested).filter((id) => [rested[id]].flat().every(Number.isFinite));
+  return [...far, off(rested, exactly(), names), names.length];
+})()"""
+
+
+@javascript.browser
+@pytest.mark.parametrize("name", ["lugansk/shaper", seldom("loom")])
+def test_a_number_that_is_moved_in_a_hurry(name, tmp_path):
+    """The mechanism and its velocities are exact while the hand moves, everything when it rests."""
+    path = tmp_path / "page.html"
+    path.write_text(made(name), encoding="utf-8")
+    with browser(tmp_path / "profile") as opened:
+        opened.open(path.as_uri())
+        opened.until("window.tmm?.ready")
+        *far, many = opened.now(HURRIED)
+        assert max(far) < 1e-9
+        assert many > 40

@@ -76,6 +76,13 @@ def test_a_day_at_the_page(tmp_path):
         page.now("tmm.open('turn')", inside=True)
         page.now(LET_GO, inside=True)
         page.until("/\\nlength = .0\\.09[45]/.test(document.getElementById('text').value)")
+        # another text: the living page is a new one, at the same place
+        page.now("tmm.open('lesson', 'velocities', 2)", inside=True)
+        page.until("location.hash.includes('plan=velocities&step=3')", inside=True)
+        page.now(typed("schema = 1", "schema = 1  # again"))
+        page.until("!document.getElementById('waits').hidden")
+        page.until("document.getElementById('waits').hidden")
+        page.until("window.tmm?.ready && lesson.told?.plan === 'velocities' && lesson.at === 2", inside=True)
         page.now(pressed("take"))
         page.now("history.back()")
         page.until("document.body.dataset.tab === 'turn'")

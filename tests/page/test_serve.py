@@ -13,8 +13,9 @@ from zipfile import ZipFile
 
 import pytest
 
-from tmm_sheets import catalogue
+from tmm_sheets import catalogue, kept
 from tmm_sheets.__main__ import run
+from tmm_sheets.output import view_pictures
 from tmm_sheets.page import doors, jobs, serving
 from tmm_sheets.page.doors import Shown, followed_file
 from tmm_sheets.page.workers import Languages, Limits, Workers
@@ -87,6 +88,15 @@ def test_a_cipher_of_ones_own(client):
 def test_a_scheme_is_small(client):
     _, told = asked(client, "scheme", project="lugansk/shaper")
     assert 0 < told["svg"].count("<path") < 120
+
+
+def test_a_scheme_is_drawn_once(tmp_path, monkeypatch):
+    monkeypatch.setenv(kept.FOLDER, str(tmp_path))
+    first = jobs.scheme({"project": "press"}, print)
+    monkeypatch.setattr(view_pictures, "thumbnail", None)
+    assert jobs.scheme({"project": "press"}, print) == first
+    with pytest.raises(TypeError):
+        jobs.scheme({"project": "lugansk/shaper"}, print)  # another one
 
 
 def test_keys_have_units_and_meaning(client):

@@ -20,6 +20,8 @@ import numpy as np
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
+PLACED = ("origin", "mu", "turn", "mirror")
+"""What says where a frame stands on the sheet."""
 HERE = 0.02
 """What is this near stands in a place itself, mm."""
 BESIDE = 2.5
@@ -48,11 +50,11 @@ def hung(record: Mapping[str, Any], sheet: Mapping[str, Any], known: Mapping[str
         thick = [m["position"] for m in marks if m.get("position") and m["style"] == "main"]
         label = frame["position"] or max(sorted(set(thick)), key=thick.count, default="")
         if label in plan["positions"]:
-            place = str([frame[name] for name in ("origin", "mu", "turn", "mirror")])
+            place = str([frame[name] for name in PLACED])
             found.setdefault((frame["view"], place), []).append(_Frame(record, plan, frame, label, marks, known))
     views = []
     for (view, _), frames in found.items():
-        marks = [told for f in frames for told in f.marks()]
+        marks = [{name: f.frame[name] for name in PLACED} | told for f in frames for told in f.marks()]
         if sum(m["kind"] != "text" for m in marks) > 2 and any(m["role"] in ("link", "vector", "point") for m in marks):
             views.append({"view": view, "plan": frames[0].plan["id"], "position": frames[0].label, "marks": marks})
     return views
@@ -98,11 +100,9 @@ class _Frame:
         return None if z is None else complex(*self.frame["origin"]) + self.turned(z)
 
     def marks(self) -> Iterator[dict[str, Any]]:
-        """Marks with what they hang on; those that hang on nothing are left out."""
-        letters = [m for m in self.drawn if m["role"] == "text"]
-        lines = [m for m in self.drawn if m["role"] != "text" and "line" in m["geometry"]]
-        others = [m for m in self.drawn if m["role"] != "text" and "line" not in m["geometry"]]
-        for mark in (*lines, *others, *letters):
+        """Marks with what they hang on, those on nothing left out; with a pole, hodographs of its vectors."""
+        lines_first = sorted(self.drawn, key=lambda m: 2 if m["role"] == "text" else "line" not in m["geometry"])
+        for mark in lines_first:
             still = mark["role"] in ("axis", "curve") and "position" not in mark
             if mark.get("position") != self.label and not still and not (mark["role"] == "construction" and "position" not in mark):
                 continue
@@ -112,8 +112,9 @@ class _Frame:
             elif key in self.points and self.steps[key]["over"] == "positions":
                 told = {"kind": "path", "of": key}
             if told is not None:
-                yield {"id": mark["id"], "style": mark["style"], "role": mark["role"], "origin": self.frame["origin"],
-                       "mu": self.frame["mu"], "turn": self.frame["turn"], "mirror": self.frame["mirror"], **told}
+                yield {"id": mark["id"], "style": mark["style"], "role": mark["role"], **told}
+        for key in dict.fromkeys(last for pairs in self.lines.values() for first, last in pairs if first == self.plan.get("pole")):
+            yield {"id": f"hodograph of {key}", "style": "thin", "role": "hodograph", "kind": "path", "of": key}
 
     def _mark(self, mark: dict[str, Any]) -> dict[str, Any] | None:
         shape, (kind, points) = mark["geometry"], _points(mark["geometry"])

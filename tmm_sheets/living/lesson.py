@@ -8,6 +8,7 @@ point where the lines cross, the rate of turning that follows from it, points by
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets.construction import protocol, rules
@@ -159,14 +160,8 @@ class _Lesson:
 
     def _behind(self, stops: list[dict[str, Any]], start: Step) -> int:
         """Where a line is told: behind its beginning, if only vectors of the same equation were laid off since; else now."""
-        place = len(stops)
-        for n in range(len(stops) - 1, -1, -1):
-            if stops[n]["step"] == self.index.id(start) and stops[n]["kind"] == "lay":
-                place = n + 1
-                break
-            if stops[n]["kind"] != "lay":
-                break
-        return place
+        since = takewhile(lambda stop: stop["kind"] == "lay", reversed(stops))
+        return next((len(stops) - n for n, stop in enumerate(since) if stop["step"] == self.index.id(start)), len(stops))
 
     def _line(self, step: Step, start: Step, along: Step) -> dict[str, Any]:
         across = along.rule is rules.TURN
@@ -227,6 +222,9 @@ def lesson_words() -> dict[str, str]:
         "lecture": tr("Lecture"),
         "copy link": tr("Copy link"),
         "copied": tr("The link is copied"),
+        "film": tr("Film"),
+        "film of the plan": tr("Play the lesson and keep it as a film (WebM)"),
+        "no film here": tr("This browser cannot make a film"),
         "nothing found": tr("Nothing found"),
         "with other numbers": tr("with other numbers than the project's"),
         "guess": tr("Where will it go?"),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -59,29 +59,16 @@ class WrittenPlan:
         return {"inputs": self.inputs, "results": self.source.results, "constants": self.source.constants}
 
 
-@dataclass(frozen=True)
-class MotionProgram:
-    """The program of a linkage's plans with what it takes.
+class MotionProgram(NamedTuple):
+    """The programs of a linkage's plans, and what the page takes besides their texts.
 
-    Of ``programs`` "all" computes every plan, "watched" what ``searches`` ask for, "wheel" the reduced quantities where the
-    crank runs as its flywheel lets it, of which ``wheel`` tells more. ``crank`` are the ids of its pivot and its pin; ``start``
-    its angle in position 0, rad.
+    "all" computes every plan, "watched" what searches ask for, "wheel" the reduced quantities where the crank runs as its flywheel
+    lets it. ``told`` has what each program takes, by its name; ``givens``; the ids of the ``crank``'s pivot and pin; ``start``, its
+    angle in position 0, rad, the ``sense`` and the ``period`` of the cycle; and the ``searches``.
     """
 
     programs: dict[str, WrittenPlan]
-    wheel: dict[str, Any]
-    givens: list[dict[str, Any]]
-    crank: tuple[str, str]
-    start: float
-    sense: float
-    period: float
-    searches: dict[str, Any]
-
-    def told(self) -> dict[str, Any]:
-        """What the page takes besides the programs' texts."""
-        programs = {name: one.told | (self.wheel if name == "wheel" else {}) for name, one in self.programs.items()}
-        return {**programs, "givens": self.givens, "crank": self.crank, "start": self.start, "sense": self.sense,
-                "period": self.period, "searches": self.searches}
+    told: dict[str, Any]
 
 
 def motion(project: Project, index: StepIndex) -> MotionProgram:
@@ -122,16 +109,18 @@ def motion(project: Project, index: StepIndex) -> MotionProgram:
         inputs = [*(rows[key] for key in taken), *map(_fixed, frozen.values()), *({"given": name} for name in own)]
         return WrittenPlan(JavaScriptSource(made), inputs)
 
-    points, crank = study.positions.points, study.mechanism.crank
-    ends = points[crank.pivot].path, points[crank.pin].path
     programs = {"all": written(wanted), "watched": written(search.watched)}
     if wheel is not None:
         programs["wheel"] = written(wheel.steps)
     factors = {one["diagram"]: {"name": one["diagram"], "symbol": one["symbol"], "unit": "", "value": 1.0}
                for made in programs.values() for one in made.inputs if "diagram" in one}
     givens = [{"name": g.name, "symbol": g.symbol, "unit": g.unit, "value": told(value_of(g))} for g in chosen.values()]
-    return MotionProgram(programs, wheel.told if wheel is not None else {}, [*givens, *factors.values()],
-                         ends, float(cycle.start), float(cycle.sense), float(cycle.period), search.told)
+    more = {"wheel": wheel.told} if wheel is not None else {}
+    points, crank = study.positions.points, study.mechanism.crank
+    return MotionProgram(programs, {
+        **{name: one.told | more.get(name, {}) for name, one in programs.items()}, "givens": [*givens, *factors.values()],
+        "crank": (points[crank.pivot].path, points[crank.pin].path), "start": float(cycle.start), "sense": float(cycle.sense),
+        "period": float(cycle.period), "searches": search.told})
 
 
 def _fixed(step: Step) -> dict[str, Any]:
@@ -398,9 +387,10 @@ class Searches:
     def _friction(self, rows: Iterable[Any]) -> list[dict[str, Any]]:
         """Pairs with friction: the reaction that is assumed and found, and along what it slides where it does."""
         of = self.study.forces.friction if "forces" in vars(self.study) else None
-        found: list[dict[str, Any]] = []
-        for index in of.pairs if of is not None else ():
-            assert of is not None
+        if of is None:
+            return []
+        found = list[dict[str, Any]]()
+        for index in of.pairs:
             turns = index in of.moments
             name = f"reaction F{index}" if turns else f"side of F{index}"
             for row in rows:

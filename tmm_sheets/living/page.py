@@ -58,7 +58,7 @@ def page(project: Project, numbers: Iterable[int] = (), plan: str = "") -> tuple
     made = motion(project, recording.book_of(project)) if moving else None
     if made is not None:
         places = scan(project.variant.text).places
-        record["motion"] = made.told() | {"givens": [g | slider(project.variant, places, g["name"]) for g in made.givens]}
+        record["motion"] = made.told | {"givens": [g | slider(project.variant, places, g["name"]) for g in made.told["givens"]]}
         computed = made.programs["all"].source.results
         for sheet in record["sheets"]:
             sheet["live"] = hung(record, sheet, computed)
@@ -191,7 +191,7 @@ def page_words() -> dict[str, str]:
         "crank angle": tr("Crank angle"),
         "crank pin: drag it round": tr("Crank pin: drag it round"),
         "does not assemble at this angle": tr("The mechanism does not assemble at this angle"),
-        "drag the crank pin or a slider": tr("Drag the crank pin round, or a slider: all plans follow."),
+        "drag the crank pin or a slider": tr("Drag the crank pin round, a fixed point or a slider: all plans follow."),
         "fixed points": tr("Fixed points"),
         "find": tr("Find a step or a result"),
         "from it follow": tr("From it follow"),
@@ -204,6 +204,7 @@ def page_words() -> dict[str, str]:
         "lengths": tr("Lengths"),
         "list of keys": tr("Space: play or pause\n← →: a step, or a degree\nHome, End: beginning, end\n"
                            "+ −: zoom, 0: the whole sheet\nEsc: leave a step\nCtrl+Z: undo\n"
+                           "In a drawing: ↑ ↓ from line to line, Enter: tell of it\n"
                            "In a lesson: G: guess, F: lecture, B: dark"),
         "loads": tr("Loads"),
         "made of": tr("Made of"),

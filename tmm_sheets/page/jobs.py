@@ -12,10 +12,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tmm_sheets import catalogue, files, progress, words
+from tmm_sheets import catalogue, files, kept, progress, words
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.output.building import with_room
 from tmm_sheets.page.workers import Message, Say, told
+from tmm_sheets.program import fingerprint, maker
 from tmm_sheets.project import Project
 from tmm_sheets.words import tell
 
@@ -76,10 +77,16 @@ def project(asked: Mapping[str, str], say: Say) -> Message:
 
 
 def scheme(asked: Mapping[str, str], say: Say) -> Message:
-    """A small picture of the mechanism of a shipped project."""
+    """A small picture of the mechanism of a shipped project, kept for the next time."""
     from tmm_sheets.output import view_pictures
 
-    return {"svg": view_pictures.thumbnail(Project(shipped(asked))).svg}
+    found = shipped(asked)
+    name = fingerprint("scheme", maker(), found.text)
+    data = kept.read(name)
+    if data is None:
+        data = view_pictures.thumbnail(Project(found)).svg.encode()
+        kept.write(name, data)
+    return {"svg": data.decode()}
 
 
 def check(asked: Mapping[str, str], say: Say) -> Message:
@@ -110,13 +117,10 @@ def sheet(asked: Mapping[str, str], say: Say) -> Message:
 
 
 def living(asked: Mapping[str, str], say: Say) -> Message:
-    """The living page; where there can be none, why."""
+    """The living page."""
     from tmm_sheets.living.page import page
 
-    try:
-        return {"html": page(opened(asked))[0]}
-    except (BadInput, CannotBuild) as e:
-        return {"html": refusal(str(e))}
+    return {"html": page(opened(asked))[0]}
 
 
 def refusal(said: str) -> str:
@@ -159,15 +163,11 @@ def _commands(asked: Mapping[str, str], file: str) -> Iterator[tuple[str, ...]]:
             ["--one-file"] if "one-file" in wanted and "pdf" in formats else [])
     if noted := [form for form in ("pdf", "docx") if f"note-{form}" in wanted]:
         yield "note", file, *names, f"--format={','.join(noted)}", *out
-    for size in TILES:
-        if size in wanted:
-            yield "plot", file, *names, *sheets, f"--tile={size}", "--bar", *out
-    if "page" in wanted:
-        yield "page", file, *sheets, "-o", str(MADE / "page.html")
-    if "record" in wanted:
-        yield "record", file, *sheets, "--json", str(MADE / "record.json")
-    if "table" in wanted:
-        yield "compare", file, "--template", *out
+    others = {size: ("plot", file, *names, *sheets, f"--tile={size}", "--bar", *out) for size in TILES} | {
+        "page": ("page", file, *sheets, "-o", str(MADE / "page.html")),
+        "record": ("record", file, *sheets, "--json", str(MADE / "record.json")),
+        "table": ("compare", file, "--template", *out)}
+    yield from (command for wish, command in others.items() if wish in wanted)
 
 
 def group(asked: Mapping[str, str], say: Say) -> Message:
