@@ -22,8 +22,10 @@ class Box(NamedTuple):
     @classmethod
     def around(cls, z: Points, margin: float = 0.0) -> Box:
         """Bounding rectangle of points with a margin."""
-        return cls(float(z.real.min()) - margin, float(z.imag.min()) - margin, float(z.real.max()) + margin,
-                   float(z.imag.max()) + margin)
+        import numpy as np
+
+        x, y, least, most = z.real, z.imag, np.minimum.reduce, np.maximum.reduce
+        return cls(float(least(x)) - margin, float(least(y)) - margin, float(most(x)) + margin, float(most(y)) + margin)
 
     @property
     def corners(self) -> Points:

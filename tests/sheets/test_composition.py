@@ -30,9 +30,10 @@ from tmm_sheets.sheets.composing import INSIDE
 from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
 from tmm_sheets.sheets.linkage import diagrams, friction, kinematic_frames, kinetic_frames, link_marks
 from tmm_sheets.sheets.linkage.linkage_sizes import OF_FORCE
-from tmm_sheets.sheets.player import fit_frame
+from tmm_sheets.sheets.player import fit_frame, once
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.sheets.views import arrangement
+from tmm_sheets.words import on_paper, paper
 
 ROOM = Box(0.0, 0.0, 400.0, 300.0)
 
@@ -365,3 +366,42 @@ def test_a_scheme_has_room_for_its_forces_along_its_links():
 def test_every_group_is_drawn_whatever_number_the_sheet_is_made_for(sheet, name, count):
     shown = arranged(files.project(files.from_file(f"tests/projects/{name}.toml"), {"project.sheets": [sheet]}), 1).views
     assert sorted(view.options["group"] for view in shown if view.draw == "kinetics.group") == [*range(1, count + 1)]
+
+
+@pytest.mark.parametrize("room", [(200.0, 150.0), (60.0, 150.0), (30.0, 20.0)])
+def test_a_figure_that_costs_too_much_whole_is_not_tried_with_its_texts(room):
+    """Up to a limit it costs the same; from there on it is told to cost that at least."""
+    def node():
+        return FigureNode(children=leaves(FIGURE, Need(least=(0.0, 0.0))), forms=(LOW, NARROW))
+
+    cost = node().cost(*room)
+    assert node().cost(*room, 2 * cost) == cost
+    dear = node()
+    assert dear.cost(*room, 0.0) >= 0.0
+    assert not dear.tried
+    assert dear.cost(*room) == cost
+
+
+def test_ways_of_a_sheet_share_what_places_cost_and_move_their_own_borders():
+    tree = joined(0, leaves(Need((5.0, 1.0)), Need((1.0, 5.0))), [1.0, 1.0])
+    other = tree.again()
+    places = solve(tree, ROOM)
+    assert [node.tried is own.tried for node, own in zip(other.every(), tree.every(), strict=True)] == [False, True, True]
+    assert other.shares == [0.5, 0.5] != tree.shares
+    assert solve(other, ROOM) == places
+
+
+def test_what_a_project_has_found_is_found_once_in_each_language():
+    asked = []
+
+    @once
+    def double(of, number, more=0):
+        asked.append(paper())
+        return 2 * number + more
+
+    project = SimpleNamespace()
+    assert [double(project, 2), double(project, 2), double(project, 3), double(project, 3, more=1)] == [4, 4, 6, 7]
+    with on_paper("uk" if paper() != "uk" else "ru"):
+        assert double(project, 2) == 4
+    assert double(SimpleNamespace(), 2) == 4
+    assert len(asked) == 5

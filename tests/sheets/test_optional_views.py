@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.few import few
+from tests.sheets.moment_lines import every_line
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.scale import Scale
@@ -149,7 +150,7 @@ def test_nothing_parts_a_scheme_from_its_force_plans():
     "lugansk/engine", "sixbar/3:2", "screen"))
 def test_equations_of_moments_hold_in_the_numbers_written(name):
     """Each line with numbers is worked out as a pupil would: the sum over the arm is the force printed, to their digits."""
-    assert sum(worked_out(line) is not None for line in moments._lines(Project(read(name)))) >= 2
+    assert sum(worked_out(line) is not None for line in every_line(Project(read(name)))) >= 2
 
 
 def worked_out(line):
@@ -203,7 +204,7 @@ def test_equation_of_the_lever_holds_in_the_numbers_written(name):
         # Positive in the sense of rotation, as in the table of results and in the equation of the crank.
         by_statics = float(p.study.forces.balancing.at(k)) * p.mechanism.crank.sense
         assert value * p.mechanism.crank.length == pytest.approx(by_statics, rel=1e-3)
-        for said in (lines[2], list(moments._lines(p))[-1]):
+        for said in (lines[2], list(every_line(p))[-1]):
             told = re.search(r" = (−?[\d,]+) Н·м \(«\+» — по ω_1\)", said)[1].replace("−", "-")
             last = 10.0 ** -len(told.partition(",")[2])
             assert float(told.replace(",", ".")) == pytest.approx(by_statics, abs=0.51 * last)

@@ -12,8 +12,9 @@ from tmm_sheets.__main__ import run
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas, Label
-from tmm_sheets.drawing.marks import Text, flat
+from tmm_sheets.drawing.marks import Arc, Fill, Line, Polyline, Text, flat
 from tmm_sheets.drawing.placing import place
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import composing as sheets
 from tmm_sheets.sheets.composing import BESIDE, INSIDE, TITLE_BLOCK, TOUCH, leaving
@@ -183,3 +184,15 @@ def test_a_note_that_has_no_room_in_its_view_stands_on_free_paper_and_is_no_faul
     assert not place(canvas, INSIDE)
     assert any(isinstance(mark, Text) and not box.contains(mark.at) for mark in canvas.marks)
     assert leaving(canvas, INSIDE, TITLE_BLOCK) == []
+
+
+def test_marks_lie_in_their_rectangles():
+    """Those of lines, lettering and curves are no larger than they have to be; an arc's is that of its circle. None have none."""
+    curve = np.array([1 + 2j, 5 - 3j, 4 + 9j])
+    marks = [Line(3 + 4j, -1 + 8j, "main"), Text(10 + 5j, "h_1", 3.5), Text(10 + 5j, "Ag", 5.0, 1.2), Polyline(curve, "thin"),
+             Fill(curve, "thin"), Arc(2 + 2j, 5.0, 0.3, 1.1, "main")]
+    found = sheets._rectangles(marks)
+    for mark, own in zip(marks[:-1], found, strict=False):
+        assert own == pytest.approx(Box.around(text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)))
+    assert found[-1] == pytest.approx((-3.0, -3.0, 7.0, 7.0))
+    assert sheets._rectangles([]).shape == (0, 4)

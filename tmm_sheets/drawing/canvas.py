@@ -5,7 +5,6 @@ from __future__ import annotations
 from cmath import phase, rect
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
-from copy import copy
 from dataclasses import dataclass, field
 from functools import wraps
 from math import ceil, cos, pi, sin
@@ -214,8 +213,8 @@ class Canvas:
 
     def tracing(self, role: Role, step: str = "", position: str = "", frame: int = -1, name: str = "") -> Canvas:
         """Canvas that puts marks with this provenance on this one; see :class:`~tmm_sheets.drawing.marks.Provenance`."""
-        other = copy(self)
-        other.by = Provenance(role, step, position, frame, name)
+        other = Canvas.__new__(type(self))
+        vars(other).update(vars(self), by=Provenance(role, step, position, frame, name))
         return other
 
     @contextmanager

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tmm_sheets import kept, words
 from tmm_sheets.program import fingerprint, maker
@@ -30,7 +30,8 @@ class Answered:
         self.variant = project.variant
         self._about = fingerprint(kind, form, maker(), words.paper(), words.reader(), project.sheets[n - 1], str(n)) \
             if kept.folder() is not None and self.variant.content else ""
-        self._known = kept.taken(kept.read(self._about), _asked_before) or [] if self._about else []
+        before = kept.read(self._about) if self._about else None
+        self._known: list[Questions] = kept.taken(before, lambda tree: [tuple(map(tuple, questions)) for questions in tree]) or []
 
     def found(self) -> Iterator[bytes]:
         """The bytes kept for the same answers, those of the latest questions first; these count as asked of the file."""
@@ -54,7 +55,3 @@ class Answered:
     def _name(self, questions: Questions) -> str:
         """What a thing is kept under: the questions that led to it and the answers of the project file."""
         return fingerprint(self._about, *(part for asked in questions for part in (repr(asked), self.variant.answer(asked))))
-
-
-def _asked_before(tree: Any) -> list[Questions]:
-    return [tuple(tuple(question) for question in questions) for questions in tree]

@@ -91,7 +91,7 @@ class Need:
 
     def needed(self, width: float, height: float) -> float:
         """Scale factor with which the view fits a place of this size, not rounded."""
-        w, h = self._room(width, height)
+        w, h = min(width - ROUNDED, self.most[0]), min(height - ROUNDED - self.covered, self.most[1])
         if self.scale is not None:
             return self.scale(w, h)
         free_w, free_h = w - self.around[0], h - self.around[1]
@@ -101,8 +101,10 @@ class Need:
         return a if a > b else b
 
     def ink(self, width: float, height: float) -> float:
-        """Area that is drawn upon in a place of this size, mm^2."""
-        w, h = self._room(width, height)
+        """Area that is drawn upon in a place of this size, mm^2. It is asked thousands of times: written without other calls."""
+        w, h = width - ROUNDED, height - ROUNDED - self.covered
+        most_w, most_h = self.most
+        w, h = w if w < most_w else most_w, h if h < most_h else most_h
         if self.drawn is not None:
             return self.drawn(w, h)
         (span_w, span_h), (around_w, around_h) = self.span, self.around
@@ -114,35 +116,18 @@ class Need:
         mu = _SERIES[bisect_left(_SERIES, (mu if mu > self.finest else self.finest) * (1 - 1e-9))]  # rounded_up, without a call
         return (span_w / mu + around_w) * (span_h / mu + around_h)
 
-    def _room(self, width: float, height: float) -> tuple[float, float]:
-        """What of a place of this size the view can use, mm. Written without min and max: it is asked thousands of times."""
-        w, h = width - ROUNDED, height - ROUNDED - self.covered
-        most_w, most_h = self.most
-        return w if w < most_w else most_w, h if h < most_h else most_h
-
     def short(self, width: float, height: float) -> float:
         """How much a place is too small, in its own size."""
         least_w, least_h = self.least
-        low = least_h + self.covered - height
-        if width >= least_w and low <= 0.0:
+        narrow, low = least_w - width, least_h + self.covered - height
+        if narrow <= 0.0 and low <= 0.0:
             return 0.0
-        return max(least_w - width, 0.0) / least_w + max(low, 0.0) / least_h + JUST
+        return (narrow / least_w if narrow > 0.0 else 0.0) + (low / least_h if low > 0.0 else 0.0) + JUST
 
     def below(self, width: float, height: float) -> float:
         """How far what is drawn in a place is below its floors: the part of them that it lacks."""
         small = max(1.0 - self.coarsest / self.needed(width, height), 0.0) if self.coarsest < inf else 0.0
         return small + max(1.0 - self.ink(width, height) / (width * height * self.filled), 0.0) if self.filled else small
-
-    def cost(self, area: float, width: float, height: float) -> tuple[float, float]:
-        """Price of a place of this size for a view that is meant to have ``area``, mm^2, and of what it is too small.
-
-        The square: what is worst counts most.
-        """
-        low = width < self.least[0] or height - self.covered < self.least[1]
-        lacks = TOO_SMALL * self.short(width, height) if low else 0.0
-        if self.filled or self.coarsest < inf:
-            lacks += BELOW * self.below(width, height)
-        return area * (area / self.ink(width, height)) ** 2, lacks
 
 
 @dataclass
@@ -150,7 +135,7 @@ class BorderNode:
     """Several parts along x (``axis`` 0) or downwards (1) with ``gap`` between them, or a view.
 
     Of a view: its ``need``, its number ``leaf``, the ``area`` that its arrangement means it to have. What the places cost in which
-    it was ``tried``, as long as no border in it moves: half of them are tried again.
+    it was ``tried``, as long as no border in it moves: most of them are tried again.
     """
 
     need: Need | None = None
@@ -160,7 +145,12 @@ class BorderNode:
     children: list[BorderNode] = field(default_factory=list)
     shares: list[float] = field(default_factory=list)
     gap: float = GAP
-    tried: dict[tuple[float, float], float] = field(default_factory=dict)
+    tried: dict[tuple[float, float], Any] = field(default_factory=dict)
+
+    def again(self) -> BorderNode:
+        """The same once more for another tree: its borders move by themselves, what its places cost is known to both."""
+        return replace(self, children=[child.again() for child in self.children], shares=[*self.shares],
+                       tried={} if self.shares else self.tried)
 
     def every(self) -> Iterator[BorderNode]:
         """The node and all below it."""
@@ -178,35 +168,39 @@ class BorderNode:
             node.leaf = number
         return list(self.places(box).values())
 
-    def sizes(self, width: float, height: float) -> list[float]:
-        """Extents of the children along the axis in a place of this size."""
-        free = (height if self.axis else width) - self.gap * (len(self.children) - 1)
-        return [share * free for share in self.shares]
-
     def cost(self, width: float, height: float, most: float = inf) -> float:
         """What the places of its views cost: more, the less of what it is meant to have each of them fills.
 
         Where that is ``most`` or more, something from ``most`` on: the other views are not asked.
         """
-        place = width, height
-        found = self.tried.get(place)
+        found: float | None = self.tried.get((width, height))
         if found is not None:
             return found
         if self.need is not None:
-            cost, lacks = self.need.cost(self.area, width, height)
+            cost, lacks = self.priced(width, height)
             found = cost + lacks
         else:
-            found = 0.0
-            for child, size in zip(self.children, self.sizes(width, height), strict=True):
-                found += child.cost(width, size, most - found) if self.axis else child.cost(size, height, most - found)
+            found, free = 0.0, (height if self.axis else width) - self.gap * (len(self.children) - 1)
+            for child, share in zip(self.children, self.shares, strict=True):
+                wide, high = (width, share * free) if self.axis else (share * free, height)
+                found += child.cost(wide, high, most - found)
                 if found >= most:
                     return found
-        self.tried[place] = found
+        self.tried[width, height] = found
         return found
 
     def priced(self, width: float, height: float) -> tuple[float, float]:
-        """What a view costs in such a place, and what it lacks there of the size at which it is read."""
-        return self.need.cost(self.area, width, height) if self.need is not None else (self.cost(width, height), 0.0)
+        """What a view costs in such a place, and what it lacks there of the size at which it is read.
+
+        The square: what is worst counts most.
+        """
+        need, lacks = self.need, 0.0
+        assert need is not None
+        if width < need.least[0] or height - need.covered < need.least[1]:
+            lacks = TOO_SMALL * need.short(width, height)
+        if need.filled or need.coarsest < inf:
+            lacks += BELOW * need.below(width, height)
+        return self.area * (self.area / need.ink(width, height)) ** 2, lacks
 
     def settle(self, width: float, height: float, steps: Sequence[float]) -> bool:
         """Move each border by that of some steps, to one side or the other, which costs least, then those inside the parts.
@@ -217,8 +211,8 @@ class BorderNode:
         moved = False
         for i in range(len(self.children) - 1):
             moved |= self._move(i, [step / free for step in steps], width, height, free)
-        for child, size in zip(self.children, self.sizes(width, height), strict=True):
-            moved |= child.settle(width if self.axis else size, size if self.axis else height, steps)
+        for child, share in zip(self.children, self.shares, strict=True):
+            moved |= child.settle(width, share * free, steps) if self.axis else child.settle(share * free, height, steps)
         if moved:
             self.tried.clear()
         return moved
@@ -227,7 +221,7 @@ class BorderNode:
         """The same of the border after child ``i``, of what its place has ``free`` for the children."""
         now, pair = self.shares[i:i + 2], self.children[i:i + 2]
         best, least = now, inf
-        for shares in (now, *([now[0] + d, now[1] - d] for by in steps for d in (by, -by) if now[0] + d > 0 < now[1] - d)):
+        for shares in (now, *[[now[0] + d, now[1] - d] for by in steps for d in (by, -by) if now[0] + d > 0 < now[1] - d]):
             most, cost = least + LESS, 0.0
             for k in (1, 0) if shares[1] < now[1] else (0, 1):  # the smaller first: it costs more than before, as a rule
                 size = shares[k] * free
@@ -245,7 +239,8 @@ class BorderNode:
         if self.need is not None:
             return {self.leaf: Box(*(float(round(x)) for x in box))}
         found, at = dict[int, Box](), box.y1 if self.axis else box.x0
-        for child, size in zip(self.children, self.sizes(box.width, box.height), strict=True):
+        free = (box.height if self.axis else box.width) - self.gap * (len(self.children) - 1)
+        for child, size in zip(self.children, (share * free for share in self.shares), strict=True):
             found |= child.places(Box(box.x0, at - size, box.x1, at) if self.axis else Box(at, box.y0, at + size, box.y1))
             at += -(size + self.gap) if self.axis else size + self.gap
         return found
@@ -277,16 +272,19 @@ class FigureNode(BorderNode):
     without: float = WITHOUT_TEXT
 
     def cost(self, width: float, height: float, most: float = inf) -> float:
-        """What the figure costs in what the form leaves of such a place that makes it cost least."""
-        place = width, height
-        if place not in self.tried:
-            cost, lacks = self._best(width, height)[0]
-            self.tried[place] = cost + lacks
-        return self.tried[place]
+        """What the figure costs in what the form leaves of such a place that makes it cost least: no less than all of the place."""
+        found: tuple[float, ...] | None = self.tried.get((width, height))
+        if found is None:
+            cost, lacks = self.children[0].priced(width, height)
+            if cost + lacks >= most:
+                return cost + lacks
+            found = self._best(width, height, cost, lacks)
+        return found[0] + found[1]
 
     def priced(self, width: float, height: float) -> tuple[float, float]:
         """What the figure costs with what is read with it, and what it lacks."""
-        return self._best(width, height)[0]
+        found = self.tried.get((width, height)) or self._best(width, height, *self.children[0].priced(width, height))
+        return found[0], found[1]
 
     def settle(self, width: float, height: float, steps: Sequence[float]) -> bool:
         """There is nothing to move."""
@@ -294,21 +292,19 @@ class FigureNode(BorderNode):
 
     def places(self, box: Box) -> dict[int, Box]:
         """Place of the figure, and of a text the whole width under it."""
-        _, wide, high = self._best(box.width, box.height)
+        _, _, wide, high = self._best(box.width, box.height, *self.children[0].priced(box.width, box.height))
         found = self.children[0].places(box._replace(x1=box.x1 - wide, y0=box.y0 + high))
         for text in self.children[1:]:
             found |= text.places(box._replace(y1=box.y0 + high - UNDER))
         return found
 
-    def _best(self, width: float, height: float) -> tuple[tuple[float, float], float, float]:
-        """What the figure costs and lacks, and the width and the height that are taken from it; of forms alike the first that fits.
+    def _best(self, width: float, height: float, whole: float, lacks: float) -> tuple[float, float, float, float]:
+        """What the figure costs and lacks, which has all of such a place for ``whole``, and the width and height taken from it.
 
-        Nothing makes a figure smaller than it is read.
+        Of forms alike the first that fits. Nothing makes a figure smaller than it is read.
         """
-        figure, price = self.children[0], 0.0
-        whole, lacks = figure.priced(width, height)
-        least = self.without * whole
-        best = (least, lacks), 0.0, UNDER + 2 * ROUNDED if self.children[1:] else 0.0
+        figure, price, least = self.children[0], 0.0, self.without * whole
+        best = least, lacks, 0.0, UNDER + 2 * ROUNDED if self.children[1:] else 0.0
         for form in self.forms:
             if form.price == price:
                 continue
@@ -319,7 +315,8 @@ class FigureNode(BorderNode):
                 price = form.price
                 cost, small = figure.priced(width - wide, height - high)
                 if not small and price * cost < least:
-                    best, least = ((price * cost, 0.0), wide, high), price * cost
+                    best, least = (price * cost, 0.0, wide, high), price * cost
+        self.tried[width, height] = best
         return best
 
 
@@ -341,7 +338,7 @@ def solve(tree: BorderNode, box: Box) -> dict[int, Box]:
 def _shared(nodes: Sequence[BorderNode], shares: Sequence[Sequence[float]]) -> None:
     for node, own in zip(nodes, shares, strict=True):
         node.shares = list(own)
-        if node.children:
+        if own:
             node.tried.clear()
 
 
@@ -420,8 +417,7 @@ def reached(size: float, floor: float) -> float:
 
 def over(view: BorderNode, forms: Sequence[Form]) -> BorderNode:
     """A view with room under it for text in one of some forms; none, the view alone."""
-    text = BorderNode(Need(least=(0.0, 0.0)), area=0.0)
-    return FigureNode(children=[view, text], forms=forms) if forms else view
+    return FigureNode(children=[view, BorderNode(Need(least=(0.0, 0.0)), area=0.0)], forms=forms) if forms else view
 
 
 def leaf(box: Box, need: Need, share: float = 1.0) -> BorderNode:
@@ -431,7 +427,7 @@ def leaf(box: Box, need: Need, share: float = 1.0) -> BorderNode:
 
 def stepped(view: ViewPlace, least: tuple[float, float], drawn: Callable[[int, int], float], share: float = 1.0) -> BorderNode:
     """Node of a view that draws on so much of a place, whole mm, not below ``least``: with standard scales only steps count."""
-    known = cache(drawn)
+    known = view.known.setdefault("drawn", cache(drawn))
     return leaf(view.box, Need(least=least, drawn=lambda w, h: max(known(int(w), int(h)), 1.0)), share)
 
 
@@ -472,8 +468,6 @@ SHARE = 0.5
 """Share of its place that a position plan takes at least, 0 .. 1: the mechanism is what the sheet is about."""
 LINKS = 1 / 3
 """Size of links in that of their whole scheme, below which they are not what its scale factor is for."""
-EMPTY = 160.0 * 120.0
-"""Area of the largest rectangle without ink that no eye stops at, mm^2."""
 
 
 LEVEL = 1e-9

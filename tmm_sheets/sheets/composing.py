@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from cmath import rect
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from math import ceil, floor, inf, pi
-from typing import TYPE_CHECKING
+from itertools import accumulate, compress, pairwise
+from math import inf
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas, Label, Part
@@ -22,7 +22,7 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Drawing, Line, Mark, Points, Text, View, flat
 from tmm_sheets.drawing.paper import A1
 from tmm_sheets.drawing.placing import place
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_boxes import bounds_of, text_box, text_boxes
 from tmm_sheets.drawing.title_block import block, draw_frame
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets import composition
@@ -69,33 +69,26 @@ def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:
     return list(found.values())
 
 
-WIDEST = 1.2
-"""No letter is wider, in heights."""
-
-
-def _surely_inside(mark: Mark, box: Box) -> bool:
-    """True for most of what keeps its place, without arrays; False asks for a closer look."""
-    if isinstance(mark, Line):
-        return box.contains(mark.a) and box.contains(mark.b)
-    if isinstance(mark, Arc):
-        quarters = range(ceil(2 * mark.start / pi), floor(2 * mark.end / pi) + 1)
-        ends = [mark.start, mark.end, *(k * pi / 2 for k in quarters)]
-        return all(box.contains(mark.centre + rect(mark.radius, t)) for t in ends)
-    if isinstance(mark, Text):
-        reach = WIDEST * mark.height * (len(mark.text) + 1)
-        return box.x0 + reach <= mark.at.real <= box.x1 - reach and box.y0 + reach <= mark.at.imag <= box.y1 - reach
-    x, y = mark.points.real, mark.points.imag
-    return bool(box.x0 <= x.min() and x.max() <= box.x1 and box.y0 <= y.min() and y.max() <= box.y1)
+def _rectangles(marks: Sequence[Mark]) -> NDArray[np.float64]:
+    """Rectangles that marks are in: x0, y0, x1, y1 of each, shape (n, 4); of an arc that of its circle."""
+    texts, found = iter(text_boxes([mark for mark in marks if isinstance(mark, Text)])), list[Any]()
+    for mark in marks:
+        if isinstance(mark, Line):
+            found.append((mark.a, mark.b, mark.a, mark.b))
+        elif isinstance(mark, Text):
+            found.append(next(texts))
+        elif isinstance(mark, Arc):
+            r = mark.radius * (1 + 1j)
+            found.append((mark.centre - r, mark.centre + r, mark.centre, mark.centre))
+        else:
+            found.append(Box.around(mark.points).corners)
+    return bounds_of(np.array(found, complex).reshape(-1, 4))
 
 
 def _boxes_of_views(canvas: Canvas) -> list[Box]:
     """Box of the view each part belongs to: that of the last part that began without a title."""
-    boxes, box = [], Box(0.0, 0.0, 0.0, 0.0)
-    for part in canvas.parts:
-        if not part.title:
-            box = part.box
-        boxes.append(box)
-    return boxes
+    boxes = (None if part.title else part.box for part in canvas.parts)
+    return [*accumulate(boxes, lambda last, own: own or last, initial=Box(0.0, 0.0, 0.0, 0.0))][1:]
 
 
 def _ink(canvas: Canvas) -> list[tuple[list[Mark], list[Mark]]]:
@@ -104,10 +97,9 @@ def _ink(canvas: Canvas) -> list[tuple[list[Mark], list[Mark]]]:
     Notes, which have no anchor, take free paper anywhere. The circle of a detail has to be where it is: what it is drawn round has
     left its place there, and is told.
     """
-    ends = [part.first for part in canvas.parts[1:]] + [len(canvas.marks)]
     found: list[tuple[list[Mark], list[Mark]]] = [
         ([canvas.marks[n] for n in range(part.first, end) if n not in canvas.windows], [])
-        for part, end in zip(canvas.parts, ends, strict=True)]
+        for part, end in zip(canvas.parts, [part.first for part in canvas.parts[1:]] + [len(canvas.marks)], strict=True)]
     for group in canvas.groups:
         if group.part >= 0 and group.anchor is not None:
             found[group.part][1].extend(mark for mark in canvas.marks[group.first:group.end] if isinstance(mark, Text))
@@ -138,11 +130,10 @@ class _Bounds:
     frame: Box
     title_block: Box
 
-    def left_by(self, marks: Iterable[Mark], slack: float, beside: list[Box]) -> Iterator[Departure]:
+    def left_by(self, marks: Sequence[Mark], slack: float, beside: list[Box]) -> Iterator[Departure]:
         """Departures of those marks that do not keep their place."""
-        for mark in marks:
-            if _surely_inside(mark, self.box):
-                continue
+        out_of_box = (_rectangles(marks) - self.box) * (1, 1, -1, -1) < 0
+        for mark in compress(marks, np.logical_or.reduce(out_of_box, axis=1)):
             p = text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)
             own = Box.around(p)
             ties = not isinstance(mark, Text) and mark.style == TIE
@@ -196,9 +187,7 @@ def viewed(project: Project, n: int) -> tuple[Arrangement, Canvas, dict[str, str
     """Arrangement of sheet ``n``, its views on a canvas without the lettering that looks for places, texts of the title block."""
     plan = composition.arranged(project, n)
     if {"positions", "flywheel"} & {view.needs for view in plan.views}:
-        from tmm_sheets.sheets.linkage.kinematic_frames import check_number
-
-        check_number(project)
+        function("kinematic_frames.check_number")(project)
     canvas = Canvas()
     fields = _framed(project, n, canvas)
     for view in plan.views:
@@ -207,16 +196,16 @@ def viewed(project: Project, n: int) -> tuple[Arrangement, Canvas, dict[str, str
         function(view.draw)(project, canvas, view.box, view.options)
     lower_titles(canvas)
     if plan.offers:
-        from tmm_sheets.sheets import optional_views
-
-        optional_views.draw(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, composition.DESIGNATION))
+        function("optional_views.draw")(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, composition.DESIGNATION))
     return plan, canvas, fields
 
 
 def composed(project: Project, n: int) -> Composed:
     """Draw sheet ``n`` and tell its scale factors and the labels that found no free place."""
     plan, canvas, fields = viewed(project, n)
-    illegible = [*composition.crowded(project, [n]), *_unread(project, n, plan, canvas)]
+    illegible = [*composition.crowded(project, [n])]
+    if any(view.draw == "details.dense" for view in plan.offers):  # its letters look for no places yet
+        illegible += function("details.unread")(project, n, canvas)
     crowded = [*(Shortened(text, TITLE_BLOCK.centre, left) for text, left in canvas.shortened.items()), *place(canvas, INSIDE)]
     title = f"{fields['project']}. {fields['title']}"
     drawing = Drawing(
@@ -228,15 +217,6 @@ def composed(project: Project, n: int) -> Composed:
     return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
                     tuple(canvas.frames), _symbols(project, drawing), _dead(project, plan),
                     tuple(composition.left_out(project, [n])), tuple(illegible))
-
-
-def _unread(project: Project, n: int, plan: Arrangement, canvas: Canvas) -> list[Remark]:
-    """What stands too densely on sheet ``n`` to be read and is in none of its details; its letters look for no places yet."""
-    if not any(view.draw == "details.dense" for view in plan.offers):
-        return []
-    from tmm_sheets.sheets.linkage import details
-
-    return details.unread(project, n, canvas)
 
 
 def ask_again(project: Project, n: int) -> None:

@@ -74,9 +74,8 @@ def _arranged(project: Project, n: int) -> Arrangement:
     if any(view.needs == "forces" for view in plan.views):
         project.check_forces()
     if any("axis" in view.options for view in plan.views):
-        from tmm_sheets.sheets.flywheel import enlarged, flywheel
-
-        return enlarged.apart(project, flywheel.apart(project, plan))
+        apart: Arrangement = function("enlarged.apart")(project, function("flywheel.apart")(project, plan))
+        return apart
     # Whoever sets scale factors by hand has the boxes as they are written; an indicator diagram only makes its mechanism larger.
     as_written = replace(plan, views=tuple(view for view in plan.views if is_meant(project, view)))
     if project.variant.scales.keys() - {"indicator"}:
@@ -85,7 +84,7 @@ def _arranged(project: Project, n: int) -> Arrangement:
         return as_written
     if any(view.needs in ("positions", "forces") for view in plan.views) and len(project.cycle.drawn) > kinematic_frames.MOST:
         return as_written  # as many positions fit on no sheet
-    ways = [_Way.of(project, way) for way in plan.ways()]
+    ways = _ways(project, as_written)
     for way in ways[1:]:
         way.means(ways[0])
     found = [solved for way in ways if (solved := way.solved()) is not None]
@@ -111,8 +110,18 @@ def _with_all_groups(project: Project, plan: Arrangement) -> Arrangement:
     if not some or len(some) == len(project.mechanism.groups):
         return plan
     every = replace(some[0], draw=some[0].kind.every, box=_around([view.box for view in some]), options={}, others={})
-    views = [every if view is some[0] else view for view in plan.views if view not in some[1:]]
-    return replace(plan, views=tuple(views))
+    return replace(plan, views=tuple(every if view is some[0] else view for view in plan.views if view not in some[1:]))
+
+
+def _ways(project: Project, plan: Arrangement) -> list[_Way]:
+    """All ways to arrange the views of a sheet; what a view needs is asked once for all that have it in one box."""
+    known = dict[tuple[int, Box], list[tuple[ViewPlace, BorderNode]]]()
+    ways = [*replace(plan, views=tuple(replace(view, known={}) for view in plan.views)).ways()]
+    for n, view in ((n, view) for way in ways for n, view in enumerate(way.views)):
+        if (n, view.box) not in known:
+            known[n, view.box] = _parts(project, view)
+    return [_Way(way, [[(part, node.again()) for part, node in known[n, view.box]] for n, view in enumerate(way.views)
+                       if known[n, view.box]]) for way in ways]
 
 
 @dataclass(frozen=True)
@@ -122,10 +131,6 @@ class _Way:
     plan: Arrangement
     parts: list[list[tuple[ViewPlace, BorderNode]]]
 
-    @classmethod
-    def of(cls, project: Project, plan: Arrangement) -> _Way:
-        return cls(plan, [parts for view in plan.views if (parts := _parts(project, view))])
-
     def areas(self) -> dict[tuple[str, Any], float]:
         """Area that each view is meant to have, mm^2."""
         return {_name(view): sum(leaf.area for leaf in node.leaves()) for parts in self.parts for view, node in parts}
@@ -134,8 +139,9 @@ class _Way:
         """Take over what another way means each view to have: only so are their costs alike."""
         own, asked = self.areas(), other.areas()
         for view, node in (part for parts in self.parts for part in parts):
-            for leaf in node.leaves():
-                leaf.area *= asked.get(_name(view), own[_name(view)]) / own[_name(view)]
+            share = asked.get(_name(view), own[_name(view)]) / own[_name(view)]
+            for each in node.every() if share != 1.0 else ():
+                each.area, each.tried = share * each.area, {}
 
     def solved(self) -> tuple[float, Arrangement] | None:
         """What its places cost and the arrangement with them; None where the boxes cannot be cut apart or what is fixed moves."""
@@ -153,9 +159,9 @@ class _Way:
         for view, node in views:
             # A table that asks for a wider column would move what is fixed there, and all borders would stay as written.
             if node.need is not None and (view.box.x0, view.box.x1) in columns_kept:
-                node.need = replace(node.need, most=(min(node.need.most[0], view.box.width), node.need.most[1]))
+                node.need, node.tried = replace(node.need, most=(min(node.need.most[0], view.box.width), node.need.most[1])), {}
             if node.need is not None and view.kind.place and _designated(view.box):
-                node.need = replace(node.need, covered=max(room.y1 - DESIGNATION.y0, 0.0))
+                node.need, node.tried = replace(node.need, covered=max(room.y1 - DESIGNATION.y0, 0.0)), {}
         found = solve(tree, room)
         # A view that tells no need has to be where its box is, up to rounding: then it stays just there.
         moved = (zip(view.box, found[node.leaf], strict=True) for view, node in views if not view.kind.place)
@@ -167,8 +173,7 @@ class _Way:
 
 def _in_columns(parts: list[tuple[ViewPlace, BorderNode]]) -> BorderNode:
     """The parts of a view one under another, in as many columns as their boxes begin at."""
-    lefts = dict.fromkeys(view.box.x0 for view, _ in parts)
-    columns = [[node for view, node in parts if view.box.x0 == x] for x in lefts]
+    columns = [[node for view, node in parts if view.box.x0 == x] for x in dict.fromkeys(view.box.x0 for view, _ in parts)]
     return joined(0, [joined(1, nodes, [1.0] * len(nodes)) for nodes in columns], [1.0] * len(columns))
 
 
@@ -200,16 +205,12 @@ def _parts(project: Project, view: ViewPlace) -> list[tuple[ViewPlace, BorderNod
     """Nodes of a view, which may stand for several one under another; none for one with nothing to draw."""
     if view.kind.parts:
         return [part for one in function(view.kind.parts)(project, view) for part in _parts(project, one)]
-    if not is_meant(project, view):
-        return []
     if not view.kind.place:
         return [(view, fixed(view.box))]
     try:
         node = function(view.kind.place)(project, view)
         if node is not None and view.draw in DETAILED and view.options.get("only", "force") == "force":
-            from tmm_sheets.sheets.linkage import details
-
-            node = details.with_room(project, view, node)
+            node = function("details.with_room")(project, view, node)
     except CannotBuild:
         node = fixed(view.box)  # drawing it will say why
     return [(view, node)] if node is not None else []
@@ -412,9 +413,7 @@ def zone(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
 
 def spring(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
     """The force of a cam's spring and that of inertia."""
-    from tmm_sheets.sheets.cams.cam import spring_diagram
-
-    span, diagram = spring_diagram(project.cam, view.box)
+    span, diagram = function("cam.spring_diagram")(project.cam, view.box)
     yield Measured(_graph("F, Q"), round(diagram.tall.mm(span)), CURVE, marked("leave out a view of the sheet"))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -61,8 +61,7 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside:
         seen = len(canvas.parts)
         if view.kind.near:
             spot, own, others = function(view.kind.near)(project, canvas, view.options)
-            pictures = [_ink_box(canvas, k, inside) for k in (own, *others)]
-            box = _near(taken, wanted, inside, spot, pictures)
+            box = _near(taken, wanted, inside, spot, [_ink_box(canvas, k, inside) for k in (own, *others)])
         else:
             at = function(view.kind.left)(view.options) if view.kind.left else None
             # Nothing parts a loaded scheme from its force plans, and kinematics stand among the forces only where there is no other
@@ -70,11 +69,9 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside:
             # may stand there.
             stands = view.kind.stands
             room = taken | (drawn if stands == "table" else whole)
-            if stands in ("anywhere", "table"):
-                rooms = [*(room | ~_gaps(canvas, inside, closed, sides) for sides in LARGE), room]
-            else:
-                rooms = [room | forces, room] if view.needs == "positions" else [room]
-            box = next((box for part in rooms if (box := _place(part, wanted, inside, at)) is not None), None)
+            first = (room | ~_gaps(canvas, inside, closed, sides) for sides in LARGE) if stands in ("anywhere", "table") else \
+                iter([room | forces] if view.needs == "positions" else [])
+            box = next((box for part in chain(first, [room]) if (box := _place(part, wanted, inside, at)) is not None), None)
         if box is not None:
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
@@ -203,8 +200,7 @@ def _ink_box(canvas: Canvas, k: int, inside: Box) -> Box:
 def _whole(canvas: Canvas, inside: Box, lettering: bool = True) -> Taken:
     """Cells between the pictures of one view of forces: a loaded scheme and its force plans; ``lettering`` is part of them."""
     taken = _closed(inside, [])
-    begins = [k for k, part in enumerate(canvas.parts) if not part.title]
-    for begin, end in pairwise([*begins, len(canvas.parts)]):
+    for begin, end in pairwise([*(k for k, part in enumerate(canvas.parts) if not part.title), len(canvas.parts)]):
         if _picture(canvas.parts[begin]) == "force plans":
             picture = _cells(canvas, range(begin, end), inside, lettering)
             taken |= _between(picture, 0)[1] | _between(picture, 1)[1]
@@ -295,11 +291,12 @@ def _between(cells: NDArray[np.bool_], axis: int) -> tuple[NDArray[np.bool_], ND
     close, between = np.zeros((2, *cells.shape), bool)
     if cells.any():
         # A part is small on the sheet: nothing lies between its ink beyond it.
-        reach = np.ix_(*(np.arange(n[0], n[-1] + 1) for n in (np.flatnonzero(cells.any(axis=1 - k)) for k in (0, 1))))
-        own = cells[reach]
+        inked = (np.logical_or.reduce(cells, axis=1 - k).nonzero()[0] for k in (0, 1))
+        reach = tuple(slice(n[0], n[-1] + 1) for n in inked)
+        own, back = cells[reach], (slice(None, None, -1), slice(None))[::1 - 2 * axis]
         n = np.arange(own.shape[axis], dtype=np.int16).reshape((-1, 1) if axis == 0 else (1, -1))
         before = np.maximum.accumulate(np.where(own, n, np.int16(-1)), axis=axis)
-        behind = np.flip(np.minimum.accumulate(np.flip(np.where(own, n, FAR), axis), axis=axis), axis)
+        behind = np.minimum.accumulate(np.where(own, n, FAR)[back], axis=axis)[back]
         between[reach] = inside = (before >= 0) & (behind < FAR)
         close[reach] = inside & (behind - before < int(OPEN / CELL))
     return close, between

@@ -17,6 +17,7 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.evenness import dense
+from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.marks import Dimension, Drawing, Line, Mark, Text, View, flat, moved
 from tmm_sheets.drawing.paper import MAIN, Paper, paper
 from tmm_sheets.drawing.text_boxes import text_box
@@ -116,18 +117,13 @@ def _pieces(composed: Composed) -> Iterator[Piece]:
 
 def _cut(line: Line, place: Box) -> Line | None:
     """What of a line lies inside a place."""
-    d, low, high = line.b - line.a, 0.0, 1.0
-    for start, along, least, most in ((line.a.real, d.real, place.x0, place.x1), (line.a.imag, d.imag, place.y0, place.y1)):
-        if along:
-            first, last = sorted(((least - start) / along, (most - start) / along))
-            low, high = max(low, first), min(high, last)
-        elif not least <= start <= most:
-            return None
-    if low >= high:
+    inside = segment_inside(place, line.a, line.b)
+    if inside is None:
         return None
+    low, high = (abs(z - line.a) / (abs(line.b - line.a) or 1.0) for z in inside)
     gaps = tuple((max((a - low) / (high - low), 0.0), min((b - low) / (high - low), 1.0)) for a, b in line.gaps
                  if a < high and b > low)
-    return line._replace(a=line.a + low * d, b=line.a + high * d, gaps=gaps)
+    return line._replace(a=inside[0], b=inside[1], gaps=gaps)
 
 
 def _together(pieces: Iterable[Piece], one: Callable[[Piece, Piece], bool]) -> list[Piece]:
@@ -212,8 +208,7 @@ def _put(piece: Piece, page: PaperPage, form: str) -> bool:
     inside, ink = page.paper.frame.inset(EDGE), piece.ink
     closed = [block(form, page.paper), page.paper.designation, *(other.ink.moved(by) for other, by in page.placed)]
     tops = sorted({inside.y1, *(box.y0 - APART for box in closed)}, reverse=True)
-    lefts = sorted({inside.x0, *(box.x1 + APART for box in closed)})
-    for top, left in product(tops, lefts):
+    for top, left in product(tops, sorted({inside.x0, *(box.x1 + APART for box in closed)})):
         by = complex(left - ink.x0, top - ink.y1)
         there = ink.moved(by)
         if there.x1 <= inside.x1 and there.y0 >= inside.y0 and not any(_near(there, box, APART) for box in closed):

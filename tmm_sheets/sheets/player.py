@@ -7,10 +7,10 @@ views, and every mark knows its step. What a view adds (letters, numbers, symbol
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import ceil, floor, log10
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,13 +22,33 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import PlacedFrame, Role
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number, of_reader, plain
-from tmm_sheets.words import tell, tr
+from tmm_sheets.words import paper, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 SHORTEST = 1.0
 """Length from which on a vector is drawn, mm; shorter ones are said."""
+
+
+S = TypeVar("S")
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def once(find: Callable[Concatenate[S, P], T]) -> Callable[Concatenate[S, P], T]:
+    """What every way to arrange a sheet, its drawing and its legibility ask of a project, or of its positions.
+
+    It is found once in each language, and what is found nobody changes.
+    """
+    def known(of: S, /, *about: P.args, **named: P.kwargs) -> T:
+        there, key = vars(of).setdefault("expected", {}), (find, paper(), *about, *named.items())
+        if key not in there:
+            there[key] = find(of, *about, **named)
+        found: T = there[key]
+        return found
+
+    return known
 
 
 class ScaleBook(Protocol):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from itertools import accumulate, islice, pairwise
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -82,22 +82,22 @@ def _sheet(tree: dict[str, Any], points: Any) -> Composed:
     drawing = Drawing(
         width, height, title, tuple(_marks_of(tree["marks"], points)), author, subject, keywords,
         views=tuple(View(name, Box(*box), tuple(map(_pair, spans))) for name, box, spans in tree["views"]),
-        dimensions=tuple(Dimension(kind, first, end, _point(a), _point(b), _point(line), text, _point(middle), factor,
-                                   _point(vertex), _pair(label))
+        dimensions=tuple(Dimension(kind, first, end, complex(*a), complex(*b), complex(*line), text, complex(*middle), factor,
+                                   complex(*vertex), _pair(label))
                          for kind, first, end, a, b, line, text, middle, factor, vertex, label in tree["dimensions"]),
-        forms=tuple(Form(name, first, end, tuple(FormField(field, a, b, _point(at), size, angle)
+        forms=tuple(Form(name, first, end, tuple(FormField(field, a, b, complex(*at), size, angle)
                                                  for field, a, b, at, size, angle in fields))
                     for name, first, end, fields in tree["forms"]))
     dead, left_out, illegible = (tuple(map(_remark, some)) for some in tree["remarks"])
     return Composed(
         drawing, {name: Scale(*scale) for name, scale in tree["scales"].items()},
-        tuple(Shortened(text, _point(at), *left) if left else Crowded(text, _point(at)) for text, at, *left in tree["crowded"]),
+        tuple(Shortened(text, complex(*at), *left) if left else Crowded(text, complex(*at)) for text, at, *left in tree["crowded"]),
         tuple(Part(first, draw, title, Box(*box), scales, headed) for first, draw, title, box, scales, headed in tree["parts"]),
-        tuple(MarkGroup(kind, first, end, text, part, None if anchor is None else _point(anchor))
+        tuple(MarkGroup(kind, first, end, text, part, None if anchor is None else complex(*anchor))
               for kind, first, end, text, part, anchor in tree["groups"]),
         tuple(Leaving(title, by, side, over, tuple((name, mu) for name, mu in scales))
               for title, by, side, over, scales in tree["leaving"]),
-        tuple(PlacedFrame(view, plan, position, _point(origin), _pair(mu), turn, mirror)
+        tuple(PlacedFrame(view, plan, position, complex(*origin), _pair(mu), turn, mirror)
               for view, plan, position, origin, mu, turn, mirror in tree["frames"]),
         tree["symbols"], dead, left_out, illegible)
 
@@ -112,7 +112,7 @@ def _marks(marks: Sequence[Mark], points: list[Any]) -> dict[str, Any]:
     traces, by = _numbered([m.by for m in marks])
     views, of = _numbered([m.of for m in marks])
     looks, styles = _numbered([m.style for m in (*lines, *arcs, *curved)])
-    letters, lettered = _numbered([(m.height, m.angle) for m in texts])
+    letters, lettered = _numbered([(m.height, m.angle, type(m.height), type(m.angle)) for m in texts])  # 5 and 5.0 are two
     numbers = iter(styles)
     return {
         "kinds": "".join(map({kind: letter for letter, kind in KINDS.items()}.__getitem__, map(type, marks))),
@@ -122,7 +122,7 @@ def _marks(marks: Sequence[Mark], points: list[Any]) -> dict[str, Any]:
         "gaps": {k: m.gaps for k, m in enumerate(marks) if isinstance(m, Line | Arc | Polyline) and m.gaps},
         "wide": {k: m.wide for k, m in enumerate(marks) if isinstance(m, Text) and m.wide != 1.0},
         "texts": [m.text for m in texts], "letters": lettered,
-        "tables": [views, traces, looks, letters],
+        "tables": [views, traces, looks, [kind[:2] for kind in letters]],
     }  # fmt: skip
 
 
@@ -152,11 +152,9 @@ def _marks_of(tree: dict[str, Any], points: Any) -> Iterator[Mark]:
 
 
 def _numbered(values: Sequence[Any]) -> tuple[list[Any], list[int]]:
-    """The values that differ, as they are met, and the number of each value among them; 1 and 1.0 in a tuple are two values."""
-    keys = [(value, *map(type, value)) if isinstance(value, tuple) else value for value in values]
-    numbers = {key: number for number, key in enumerate(dict.fromkeys(keys))}
-    known = dict(zip(reversed(keys), reversed(values), strict=True))
-    return [known[key] for key in numbers], [numbers[key] for key in keys]
+    """The values that differ, as they are met, and the number of each value among them."""
+    numbers = {value: number for number, value in enumerate(dict.fromkeys(values))}
+    return [*numbers], [numbers[value] for value in values]
 
 
 def _told(remark: Remark) -> list[Any]:
@@ -179,11 +177,6 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"a sheet has {type(value).__name__}, which is not kept")
 
 
-def _point(pair: Sequence[float]) -> complex:
-    x, y = pair
-    return complex(x, y)
-
-
 def _pair(pair: Iterable[T]) -> tuple[T, T]:
     x, y = pair
     return x, y
@@ -201,12 +194,7 @@ class Attempt(Generic[T]):
         return together(self.refused, "drawn", others or bool(self.drawn)) if self.refused else None
 
 
-@contextmanager
-def _plainly(n: int) -> Iterator[None]:
-    yield
-
-
-def attempt(project: Project, numbers: Iterable[int], around: Callable[[int], AbstractContextManager[None]] = _plainly,
+def attempt(project: Project, numbers: Iterable[int], around: Callable[[int], AbstractContextManager[Any]] = nullcontext,
             steps: bool = False) -> Attempt[Composed]:
     """Draw sheets, each for itself and within ``around`` its number: one that cannot be drawn costs no other.
 
@@ -220,10 +208,10 @@ def views(project: Project) -> Attempt[Canvas]:
     from tmm_sheets.sheets import composing
 
     numbers = range(1, len(project.variant.drawable()) + 1)
-    return _attempt(project, numbers, _plainly, lambda project, n: composing.viewed(project, n)[1])
+    return _attempt(project, numbers, nullcontext, lambda project, n: composing.viewed(project, n)[1])
 
 
-def _attempt(project: Project, numbers: Iterable[int], around: Callable[[int], AbstractContextManager[None]],
+def _attempt(project: Project, numbers: Iterable[int], around: Callable[[int], AbstractContextManager[Any]],
              draw: Callable[[Project, int], T]) -> Attempt[T]:
     found = Attempt[T]()
     for n in numbers:

@@ -233,13 +233,15 @@ VIEWS = {view.draw: view for view in (
 class ViewPlace:
     """A place on a sheet and the view of :data:`~tmm_sheets.sheets.views.VIEWS` that is drawn there.
 
-    ``others`` are its places in other ways to arrange the same views, by their names; without one it is where it is.
+    ``others`` are its places in other ways to arrange the same views, by their names; without one it is where it is. ``known`` is
+    what has been found of it for any of them.
     """
 
     draw: str
     box: Box
     options: dict[str, Any]
     others: dict[str, Box] = field(default_factory=dict)
+    known: dict[str, Any] = field(default_factory=dict, compare=False)
 
     @property
     def kind(self) -> ViewKind:

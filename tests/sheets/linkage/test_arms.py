@@ -7,12 +7,13 @@ import pytest
 
 from tests import project_files
 from tests.few import seldom
+from tests.sheets.moment_lines import every_line
 from tmm_sheets import kept as stored
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing import ink_index, labels
 from tmm_sheets.drawing.marks import Line, Provenance
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.linkage import friction, kinetic_frames, kinetics, link_marks, moments
+from tmm_sheets.sheets.linkage import friction, kinetic_frames, kinetics, link_marks
 from tmm_sheets.sheets.sheet import composed
 
 
@@ -64,7 +65,7 @@ def test_a_class_iii_scheme_shows_the_arms_of_its_equation_about_the_special_poi
     assert not couples
     armed = kinetic_frames.with_arms(project, g, shown)
     drawn = {kinetic_frames.arm_sign(force.symbol): abs(force.foot(about) - about) for force in armed}
-    lines = list(moments._lines(project))
+    lines = list(every_line(project))
     (whole,) = (n for n, line in enumerate(lines) if line.startswith("ΣM_{W"))
     signs = re.findall(r"h_\{[^}]*\}(?:\^\w+)?", lines[whole])
     assert len(signs) > 5
@@ -129,8 +130,8 @@ def test_a_closed_polygon_folds_back_at_its_beginning_too():
 def test_the_equation_of_a_guides_reaction_gives_its_couple_and_its_arm(name, lines):
     """A frame of a slotted ram: the couple by the numbers written, and where the force acts by couple and force."""
     project = Project(read(name))
-    usual = list(moments._lines(project))
-    extra = [line for line in moments._lines(project, guides=True) if line not in usual]
+    usual = list(every_line(project))
+    extra = [line for line in every_line(project, guides=True) if line not in usual]
     assert len(extra) == lines
     forces, k = project.study.forces, project.force_index
     for line in extra[1:]:

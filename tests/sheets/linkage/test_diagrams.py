@@ -18,7 +18,7 @@ from tmm_sheets.drawing.marks import Line, Polyline, Text
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.components import cycle_graphs, graphs
+from tmm_sheets.sheets.components import graphs
 from tmm_sheets.sheets.linkage import diagrams
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.sheets.views import ViewPlace
@@ -101,13 +101,13 @@ def test_two_outputs_share_the_graphs():
 def test_graphs_stand_beside_each_other_where_only_so_they_reach_their_floors(box, columns):
     p = project(SLIDER, EVEN, {"cycle.diagrams": ["B"]})
     graphs_of = diagrams.motion_graphs(p, {})
-    places = cycle_graphs.placed(p, graphs_of, box)
+    places = graphs.placed(p, graphs_of, box)
     assert len({place.box.x0 for place in places}) == columns
     for q, place, mu in places:
         assert mu == handy(mu)
         assert q.extent / mu >= q.floor == (60 if q.key == "graph-S" else 40)
-        assert q.span / mu <= place.height - cycle_graphs.ABOVE - cycle_graphs.BELOW + 1e-6
-    need = cycle_graphs.need(p, graphs_of)
+        assert q.span / mu <= place.height - graphs.ABOVE - graphs.BELOW + 1e-6
+    need = graphs.need(p, graphs_of)
     assert need.below(box.width + 1, box.height + 1) == 0.0
     assert need.below(box.width, 60.0) > 0.0
 
@@ -115,9 +115,9 @@ def test_graphs_stand_beside_each_other_where_only_so_they_reach_their_floors(bo
 def test_a_graph_that_is_offered_is_as_high_as_its_floor_asks():
     p = Project(read("screen"))
     column = diagrams.balancing_graph(p)
-    offered = cycle_graphs.CycleView(lambda p: "", lambda p, options: [column], wanted=((170.0, 20.0),))
+    offered = graphs.CycleView(lambda p: "", lambda p, options: [column], wanted=((170.0, 20.0),))
     ((width, height),) = offered.sizes(p, Canvas(), {})
-    ((q, _, mu),) = cycle_graphs.placed(p, [column], Box(0, 0, width, height))
+    ((q, _, mu),) = graphs.placed(p, [column], Box(0, 0, width, height))
     assert q.extent / mu >= 40.0
 
 

@@ -31,7 +31,7 @@ def _forms(law: PositionFunction) -> Iterator[Form]:
             yield Form(columns, height, step, least=letter(tr(TITLE), titled).width)
 
 
-equations = Formulas(TITLE, "cam-motion", lambda project, canvas, options: _forms(project.cam.law))
+equations = Formulas(TITLE, "cam-motion", lambda project: _forms(project.cam.law))
 """Displacement and both derivatives on the rise and on the return."""
 
 

@@ -564,6 +564,7 @@ def roller_width(cam: RollerCam) -> float:
     return 8.0 + max(letter(line, 3.5).width for line in _roller_lines(cam, 2e-4))
 
 
+@lru_cache(maxsize=4)
 def roller_extent(cam: RollerCam) -> tuple[float, float]:
     """Width and height of the figure for the roller's radius, m."""
     every = np.append(_sharpest(cam)[1], complex(cam.inversion.plan["M"].value))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import pi, tan
 from operator import mul
 from typing import TYPE_CHECKING, Any, cast
@@ -56,17 +57,20 @@ def fitted_tappet(cam: TappetCam, rays: bool, width: float, height: float) -> tu
 
     The finest scale factor counts, then the deepest zone.
     """
+    return min([(handy(max((edges[1] - edges[0]) / width, high / height)), -depth, edges)
+                for depth, high, edges in _zones_of_tappet(cam, rays)])
+
+
+@lru_cache(maxsize=4)
+def _zones_of_tappet(cam: TappetCam, rays: bool) -> list[tuple[float, float, tuple[float, float]]]:
+    """Depth and height of a tappet's zone, m, and the edges of its ink, for each depth that is tried."""
     z, stroke, slope = cam.zone, cam.law.stroke, tan(cam.zone.alpha)
     axis, apex = complex(z.apex.value), complex(z.plan["V"].value if "V" in z.plan else z.apex.value)
     ink = np.concatenate((z.curve.value.real, _beyond(z, rays).real, [t.real for t in _tops(z, apex, stroke)], [0.0]))
     left, right = float(ink.min()), float(ink.max())
-
-    def fitted(share: float) -> tuple[float, float, tuple[float, float]]:
-        depth = share * (stroke + z.s0) * min(1.0, 0.6 / slope) + max((apex - axis).imag, 0.0)
-        edges = min(left, apex.real - depth * slope), max(right, apex.real + depth * slope)
-        return handy(max((edges[1] - edges[0]) / width, (stroke - apex.imag + depth) / height)), -depth, edges
-
-    return min(fitted(share) for share in (0.3, 0.22, 0.15))
+    depths = [share * (stroke + z.s0) * min(1.0, 0.6 / slope) + max((apex - axis).imag, 0.0) for share in (0.3, 0.22, 0.15)]
+    return [(depth, stroke - apex.imag + depth, (min(left, apex.real - depth * slope), max(right, apex.real + depth * slope)))
+            for depth in depths]
 
 
 def stroke_in(cam: TappetCam, rays: bool, width: float, height: float) -> float:

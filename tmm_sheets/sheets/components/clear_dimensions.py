@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cmath import phase
 from collections.abc import Callable, Iterable, Sequence
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -47,11 +48,13 @@ def dimension(canvas: Canvas, first: int, a: complex, b: complex, offsets: Itera
     ink, u = InkIndex(canvas.marks[first:]), (b - a) / abs(b - a)
     long = Box(2.0, -ALONG, abs(b - a) - 2.0, ALONG)
 
+    @cache
     def ill(place: tuple[float, float, float]) -> int:
         offset, height, share = place
         return 10 * crossed(ink, a, b, offset, text, share, height) + ink.count_in(long, a + offset * 1j * u, phase(u))
 
-    offset, height, share = min(product(offsets, heights, shares), key=ill)
+    places = [*product(offsets, heights, shares)]
+    offset, height, share = next((place for place in places if not ill(place)), None) or min(places, key=ill)
     canvas.dimension(a, b, offset, text, height, share, factor)
 
 

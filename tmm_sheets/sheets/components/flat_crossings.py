@@ -64,10 +64,6 @@ class Flat:
     better_mm: float
     sines: NDArray[Any]
 
-    def same_lines(self, other: Flat) -> bool:
-        """Whether both are crossings of the same two lines: these meet under one angle in every position."""
-        return np.allclose(self.sines, other.sines, atol=1e-6)
-
 
 def find(project: Project, plan: Plan, drawn: Iterable[int], scales: dict[str, Any],
          own: Mapping[int, Scale] = MappingProxyType({})) -> list[Flat]:
@@ -156,7 +152,8 @@ def warn(project: Project, canvas: Canvas, box: Box, plan: Plan, drawn: Iterable
     The same two links meet in all plans under one angle: the note of the first of them names the others.
     """
     for flat in find(project, plan, [project.force_index] if drawn is None else drawn, canvas.scales, own):
-        n = next((n for n, note in enumerate(canvas.notes) if note.about is not None and flat.same_lines(note.about)), None)
+        n = next((n for n, note in enumerate(canvas.notes)
+                  if note.about is not None and np.allclose(flat.sines, note.about.sines, atol=1e-6)), None)
         if n is None:
             canvas.note(box, said(project, flat), about=flat)
         else:
@@ -220,6 +217,10 @@ _CANNOT = {
                      "{mm} mm")),
 }
 """What is said of a point by what it is found with: at one position, at several; the same with its error."""
+_MEET = ((marked("the lines meet at {angle}°"), marked("the lines meet at less than {angle}°")),
+         (marked("at position {worst} the lines meet at {angle}°"),
+          marked("at position {worst} the lines meet at less than {angle}°")))
+"""What is said of their angle, at one position and at several; the same of one too small to be told."""
 
 
 def said(project: Project, flat: Flat) -> str:
@@ -235,13 +236,7 @@ def said(project: Project, flat: Flat) -> str:
         at=_listed(project, flat.positions), name=link_marks.indexed(flat.step.name), links="–".join(links),
         mm=fixed(flat.mm or 0.0, 1))
     angle = degrees(flat.angle)
-    small = angle < 0.1
-    if several:
-        why = tr("at position {worst} the lines meet at less than {angle}°") if small else \
-            tr("at position {worst} the lines meet at {angle}°")
-    else:
-        why = tr("the lines meet at less than {angle}°") if small else tr("the lines meet at {angle}°")
-    why = why.format(worst=labels[flat.worst], angle=fixed(max(angle, 0.1), 0 if angle >= 10 else 1))
+    why = tr(_MEET[several][angle < 0.1]).format(worst=labels[flat.worst], angle=fixed(max(angle, 0.1), 0 if angle >= 10 else 1))
     if flat.better is None:
         advice = tr("no position of this stroke is better")
     else:

@@ -13,6 +13,7 @@ from tmm_sheets.drawing.lettering import broken, letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_boxes import CLEAR
 from tmm_sheets.drawing.text_layout import GAP, LEADING, LEAST, TOGETHER, Heading, heading, needs, parted, size_in, widened
+from tmm_sheets.sheets.player import once
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -33,8 +34,7 @@ PLACES = ((220.0, LARGE), (180.0, ROW), (150.0, 9.0), (120.0, 7.0))
 
 def letters_in(row: float, widths: Sequence[float], rows: Sequence[Sequence[str]]) -> tuple[float, float]:
     """Height of the rows of a table that has room for rows so high, and of the letters in them, mm: the larger if they fit."""
-    wide = sum(needs(rows, LETTERS, LEAST + GAP))
-    return (LARGE, LETTERS) if row >= LARGE and wide <= sum(widths) else (min(row, ROW), 3.5)
+    return (LARGE, LETTERS) if row >= LARGE and sum(needs(rows, LETTERS, LEAST + GAP)) <= sum(widths) else (min(row, ROW), 3.5)
 
 
 @dataclass(frozen=True)
@@ -103,22 +103,28 @@ class Formulas:
 
     title: str
     of: str
-    forms: Callable[[Project, Canvas, dict[str, Any]], Iterable[Form]]
+    forms: Callable[[Project], Iterable[Form]]
 
     def sizes(self, project: Project, canvas: Canvas, options: dict[str, Any]) -> Sizes:
         """Places that it can do with."""
-        return [form.size for form in self.forms(project, canvas, options)]
+        return [size for size, _ in _sized(project, self)]
 
     def __call__(self, project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
         """Draw it."""
         canvas.of = self.of
-        room = box.width + 1e-6, box.height + 1e-6
-        form = next(form for form in self.forms(project, canvas, options) if form.size[0] <= room[0] and form.size[1] <= room[1])
-        left = canvas.title(box, tr(self.title), spare=box.height - form.size[1])
+        high, form = next((size[1], form) for size, form in _sized(project, self)
+                          if size[0] <= box.width + 1e-6 and size[1] <= box.height + 1e-6)
+        left = canvas.title(box, tr(self.title), spare=box.height - high)
         x = box.x0 + 3.0
         for lines, width in zip(form.columns, form.widths, strict=True):
             canvas.lines(complex(x, left.y1 - 0.8 * form.pitch), lines, form.pitch, form.height)
             x += width
+
+
+@once
+def _sized(project: Project, view: Formulas) -> list[tuple[tuple[float, float], Form]]:
+    """The forms of a view of lines with the places that they take."""
+    return [(form.size, form) for form in view.forms(project)]
 
 
 @dataclass(frozen=True)
@@ -159,8 +165,7 @@ def table(canvas: Canvas, left: Box, rows: list[list[str]], tallest: float = 11.
     for part in parts:
         columns = len(part[0]) - 1
         width = (left.width - first) / (len(parts[0][0]) - 1)
-        wide = max(letter(cell, 3.5).width for line in part for cell in line[1:]) <= width - 1
-        height = size_in(high) if wide else 2.5
+        height = size_in(high) if max(letter(cell, 3.5).width for line in part for cell in line[1:]) <= width - 1 else 2.5
         canvas.table(complex(left.x0, top), widened([first, *[width] * columns], part, height), part, high, height)
         top -= high * len(part)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cmath import phase, rect
+from functools import lru_cache
 from math import degrees, pi, radians
 from typing import TYPE_CHECKING, cast
 
@@ -105,6 +106,7 @@ def _fits(gear: GearPair, scale: Scale, broken: Broken, width: float, height: fl
     return left + right <= width - 6.0 - 2 * BESIDE and below + above <= height - 16.0 - len(broken) * HUB - 2 * UNDER
 
 
+@lru_cache(maxsize=64)
 def _broken_extent(gear: GearPair, scale: Scale, broken: Broken) -> tuple[float, float, float, float]:
     """What is to be seen about the pole of a pair with broken wheels, m: the side of its foot N2, the other, below, above.
 

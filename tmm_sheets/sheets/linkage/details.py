@@ -30,7 +30,7 @@ from tmm_sheets.numbers import number
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.border_solver import WITHOUT_DETAILS, BorderNode, FigureNode, Form
 from tmm_sheets.sheets.linkage import link_marks
-from tmm_sheets.sheets.player import PlayerStage, together
+from tmm_sheets.sheets.player import PlayerStage, once, together
 from tmm_sheets.sheets.views import ViewPlace, function
 from tmm_sheets.words import marked
 
@@ -131,7 +131,9 @@ def with_room(project: Project, view: ViewPlace, node: BorderNode) -> BorderNode
         boxes, canvas = node.parts(view.box), Canvas()
         canvas.begin(view.box, "", view.draw)
         # On no sheet: what is told of a view by the scale factors of others would ask for the arrangement that is being made.
-        options = {**view.options, **({"places": boxes} if len(boxes) > 1 else {})}
+        # The equation of the lever is none of what may be enlarged.
+        drawn = boxes[:1] if view.kind.picture == "forces" else boxes
+        options = {**view.options, **({"places": drawn} if len(boxes) > 1 else {})}
         function(view.draw)(project.on_sheets([]), canvas, view.box, options)
         found = dict[int, list[list[tuple[float, float]]]]()
         for place in _every(project, canvas):
@@ -164,7 +166,7 @@ def _beside(node: BorderNode, figure: BorderNode, forms: Sequence[Form]) -> Bord
     """A tree in which a figure has room for one of some forms."""
     if node is figure:
         return FigureNode(children=[figure], forms=forms, without=WITHOUT_DETAILS)
-    node.children = [_beside(child, figure, forms) for child in node.children]
+    node.children, node.tried = [_beside(child, figure, forms) for child in node.children], {}
     return node
 
 
@@ -368,6 +370,7 @@ def _corners(canvas: Canvas, polygons: Mapping[str, Polygon], whole: Sequence[Pl
     return canvas.corners[len(whole)]
 
 
+@once
 def _polygons(project: Project) -> dict[str, Polygon]:
     """Plans by their names with their vectors."""
     study = project.study

@@ -19,11 +19,11 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import NOISE, fixed, is_zero
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.border_solver import Measured
-from tmm_sheets.sheets.components import cycle_graphs, graphs, listed
-from tmm_sheets.sheets.components.cycle_graphs import Column, Curve, Quantity
+from tmm_sheets.sheets.components import graphs, listed
+from tmm_sheets.sheets.components.graphs import Column, Curve, Quantity
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
 from tmm_sheets.sheets.linkage.link_marks import SignedTable, indexed, shapes, tell_signs
-from tmm_sheets.sheets.player import PlanFrame, PlayerStage, extent, pick, together
+from tmm_sheets.sheets.player import PlanFrame, PlayerStage, extent, once, pick, together
 from tmm_sheets.words import both, marked, marked_n, tell, tr, tr_in
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def _at_rest(project: Project) -> Remark:
                   {"names": both(project.diagrams)}, len(project.diagrams))
 
 
-kinematic = cycle_graphs.CycleView(lambda project: tr("Kinematic diagrams"), _moving, 0.5)
+kinematic = graphs.CycleView(lambda project: tr("Kinematic diagrams"), _moving, 0.5)
 """The graphs of these diagrams."""
 
 
@@ -95,7 +95,7 @@ def motion_low(project: Project, n: int, view: ViewPlace) -> Iterator[Measured |
     columns = motion_graphs(project, view.options)
     if columns and not _moves(columns):
         yield _at_rest(project)
-    yield from cycle_graphs.low(project, columns, view.box)
+    yield from graphs.low(project, columns, view.box)
 
 
 def _motion(project: Project, options: Options) -> tuple[str, list[list[str]]]:
@@ -159,7 +159,7 @@ def balancing_graph(project: Project) -> Column:
     return (Quantity("graph-M", sign, tr("N·m"), (curve,), level=(name, float(mean.value))),)
 
 
-balancing = cycle_graphs.CycleView(lambda project: tr("Graph of the balancing moment"),
+balancing = graphs.CycleView(lambda project: tr("Graph of the balancing moment"),
                                    lambda project, options: [balancing_graph(project)], wanted=GRAPH_SIZES)
 """Balancing moment over the whole cycle by kinetostatics, positive in the sense of rotation; its mean drives the machine."""
 
@@ -283,10 +283,7 @@ def _of_loads(project: Project) -> str:
     return tr("Technological load (taken)") if taken else tr("Technological load")
 
 
-loads = cycle_graphs.CycleView(_of_loads, lambda project, options: [column] if (column := load_graph(project)) else [])
-"""The graph of these loads."""
-
-
+@once
 def load_graph(project: Project) -> Column:
     """The graph of these loads; nothing where there are none."""
     shown, cycle = _shown(project), project.cycle
@@ -302,6 +299,10 @@ def load_graph(project: Project) -> Column:
 
     curves = [Curve(indexed(f.name), f"loads/{f.name}", turned, f.shown(turned), at(f)) for f in shown]
     return (Quantity.of("loads", letter, unit, curves),)
+
+
+loads = graphs.CycleView(_of_loads, lambda project, options: [column] if (column := load_graph(project)) else [])
+"""The graph of these loads."""
 
 
 def _shown(project: Project) -> list[Applied]:

@@ -21,7 +21,7 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, is_zero, number
 from tmm_sheets.sheets.border_solver import BorderNode, leaf, reaching, rows, stepped
-from tmm_sheets.sheets.components import cycle_graphs, graphs, listed
+from tmm_sheets.sheets.components import graphs, listed
 from tmm_sheets.sheets.linkage import diagrams, link_marks
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
 from tmm_sheets.sheets.player import PlanFrame, PlayerStage, fit_frame, play, ratio, stage, standard
@@ -97,8 +97,7 @@ def mechanism(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     """The mechanism at the analysed position: circles of friction to scale, in each pair the reaction on its first link."""
     of, k, pos = _friction(project), project.force_index, project.study.positions
     frame = fit_frame(project, canvas, "friction-scheme", "μ_l", tr("m/mm"), *scheme(project), box.inset(*AROUND))
-    title = tr("Reactions with friction (position {label})").format(label=project.cycle.labels[k])
-    canvas.title(box, title, str(frame.scale))
+    canvas.title(box, tr("Reactions with friction (position {label})").format(label=project.cycle.labels[k]), str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
     link_marks.draw_guides(s, pos)
     link_marks.draw(s, pos, "main")
@@ -177,10 +176,12 @@ def pairs(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
             place = Box(left.x0 + n * box.width / columns, y, left.x0 + (n + 1) * box.width / columns, top)
             at = complex(project.study.positions.points[_hinge(of, index)].at(k))
             frame = PlanFrame(scale, complex(place.centre.real, top - (NAME + float(up)) * shrunk) - scale.mm(at))
+            s = stage(canvas, project.study.positions.plan, k, frame)
+            canvas.text(complex(place.centre.real, place.y1 - 5.0), _name(of, index), 3.5, "centre")
             if index in of.moments:
-                _turning(project, canvas, place, frame, index, step, force)
+                _turning(project, s, index, step, force)
             else:
-                _sliding(project, canvas, place, frame, index, step, force, half)
+                _sliding(project, s, index, step, force, half)
             lines = _told(project, of, index, force, k)
             foot = complex(place.centre.real, place.y0 + 3.0 + APART + 6.0 * (len(lines) - 1))
             canvas.lines(foot, lines, 6.0, size_for(lines, place.width - 4.0, 3.5), "centre")
@@ -199,31 +200,24 @@ def _reach(of: Friction, index: str, force: complex, k: int, scale: Scale, half:
     return max(z.imag for z in ends), -min(z.imag for z in ends)
 
 
-def _turning(project: Project, canvas: Canvas, box: Box, frame: PlanFrame, index: str, step: Step, force: complex) -> None:
+def _turning(project: Project, s: PlayerStage, index: str, step: Step, force: complex) -> None:
     """A journal, its circle of friction, the reaction that touches it, the relative turning."""
-    of, k, pos = _friction(project), project.force_index, project.study.positions
-    hinge, turn = _hinge(of, index), of.turning[index]
-    s = stage(canvas, pos.plan, k, frame)
-    canvas.text(complex(box.centre.real, box.y1 - 5.0), _name(of, index), 3.5, "centre")
-    centre, journal = s.at(hinge), frame.scale.mm(float(of.radii[hinge].args[1]))
-    with canvas.as_role("symbol"):
-        canvas.circle(centre, journal, "main")
+    of, k, hinge = _friction(project), project.force_index, _hinge(_friction(project), index)
+    turn, centre, journal = of.turning[index], s.at(hinge), float(of.radii[hinge].args[1]) / s.frame.mu[1]
+    with s.canvas.as_role("symbol"):
+        s.canvas.circle(centre, journal, "main")
         for u in (1, 1j):
-            canvas.line(centre - (journal + 4) * u, centre + (journal + 4) * u, "centre")
+            s.canvas.line(centre - (journal + 4) * u, centre + (journal + 4) * u, "centre")
     _reaction(project, s, step, index, force, journal + 14.0)
     if not of.still(index, k):
         symbols.rotation_arrow(s.pen(turn, "symbol"), centre, journal + 3.0, -force if force else 1 + 1j,
                                float(np.real(turn.at(k))), f"ω_{{{index}}}")
 
 
-def _sliding(project: Project, canvas: Canvas, box: Box, frame: PlanFrame, index: str, step: Step, force: complex,
-             half: float) -> None:
+def _sliding(project: Project, s: PlayerStage, index: str, step: Step, force: complex, half: float) -> None:
     """A block on its guide of this half length, the normal, the reaction that deviates from it, the velocity of sliding."""
-    of, k, pos = _friction(project), project.force_index, project.study.positions
-    hinge = _hinge(of, index)
-    s = stage(canvas, pos.plan, k, frame)
-    canvas.text(complex(box.centre.real, box.y1 - 5.0), _name(of, index), 3.5, "centre")
-    centre, v, turn = s.at(hinge), complex(of.sliding[index].at(k)), float(of.deviations[index].at(k))
+    of, k, canvas = _friction(project), project.force_index, s.canvas
+    centre, v, turn = s.at(_hinge(of, index)), complex(of.sliding[index].at(k)), float(of.deviations[index].at(k))
     normal = force * complex(np.exp(-1j * turn)) / abs(force) if force else 1j * v / abs(v) if v else 1j
     along, thick = -1j * normal, half / 6
     with canvas.as_role("symbol"):
@@ -268,7 +262,6 @@ def _told(project: Project, of: Friction, index: str, force: complex, k: int) ->
 def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """All pairs with friction: reaction, moment or deviation, relative velocity, power; their sum, and what the drive has."""
     of, k, study = _friction(project), project.force_index, project.study
-    assert of.power_plan is not None
     rows = [[tr("Pair"), tr("F, N"), tr("ρ, mm"), tr("M_f, N·m"), tr("ω, s^{−1}"), tr("φ, °"), tr("V, m/s"), tr("N_f, W")]]
     for index in of.pairs:
         name, force = link_marks.indexed(of.pairs[index].name), number(abs(complex(study.forces.reactions[f"F{index}"].at(k))), 5)
@@ -289,7 +282,6 @@ def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
 
 def _balance(project: Project, of: Friction, k: int) -> list[str]:
     """Number of approximations, power of friction, and what the drive gives: the part that friction takes of it."""
-    assert of.power_plan is not None
     lines = [tr("Approximations until the reactions stay: {count}").format(count=int(of.approximations)),
              tr("Power of friction N_{{f}} = {power} W; on the input link M_{{f}} = {moment} N·m").format(
                  power=number(-float(of.total.at(k)), 5), moment=number(abs(float(of.on_crank.at(k))), 4))]
@@ -321,17 +313,17 @@ positions = listed.Upright(_in_positions)
 """The table of these sizes."""
 
 
-def power_graph(project: Project) -> cycle_graphs.Column:
+def power_graph(project: Project) -> graphs.Column:
     """The graph of that power."""
     every, step, course = project.course.turned, _friction(project).total, project.course.forces.friction
     assert course is not None
     values = [np.broadcast_to(np.real(of.total.value), np.shape(at)) for of, at in
               ((course, every), (_friction(project), project.cycle.turned))]
     sign, unit = tr("N_f, W").split(", ")
-    return (cycle_graphs.Quantity("graph-N", sign, unit, (cycle_graphs.Curve("", step.path, every, *values),)),)
+    return (graphs.Quantity("graph-N", sign, unit, (graphs.Curve("", step.path, every, *values),)),)
 
 
-power = cycle_graphs.CycleView(lambda project: tr("Power of friction in the pairs"),
+power = graphs.CycleView(lambda project: tr("Power of friction in the pairs"),
                                lambda project, options: [power_graph(project)], 0.5, diagrams.GRAPH_SIZES)
 """Power of friction in all pairs over the whole cycle."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import product
+from itertools import chain, product
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
@@ -20,47 +20,54 @@ from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import decimals_for, fixed, is_zero, number, size, written
 from tmm_sheets.sheets.components import graphs, listed
 from tmm_sheets.sheets.linkage import kinematic_frames, link_marks
+from tmm_sheets.sheets.player import once
 from tmm_sheets.words import marked, tell, tr, tr_in
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Segment, Step
     from tmm_sheets.project import Project
 
-ROW = 7.0
-"""Highest row of the tables, mm."""
+ROW, HEAD = 7.0, 8.0
+"""Highest row of the tables, and height of the title over one, mm."""
+Rows = list[list[str]]
+
+
+@once
+def _tables(project: Project) -> list[tuple[str, Rows]]:
+    """Titles and rows of the tables of the values at the given position (manual 003, section 4, works 3-6)."""
+    label = project.cycle.labels[project.force_index]
+    found = [(tr("Velocities and accelerations (position {label})").format(label=label), _points(project)),
+             (tr("Links: angular quantities and inertia loads"), _links(project)), (tr("Technological loads"), _loads(project))]
+    return [(title, rows) for title, rows in found if len(rows) > 1]
+
+
+def extent(project: Project) -> tuple[int, float]:
+    """Rows that the tables have together, and the height of their titles, mm."""
+    return sum(len(rows) for _, rows in _tables(project)), HEAD * len(_tables(project))
 
 
 def values(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Tables of the values at the given position (manual 003, section 4, works 3-6)."""
-    label = project.cycle.labels[project.force_index]
-    tables = [
-        (tr("Velocities and accelerations (position {label})").format(label=label), _points(project)),
-        (tr("Links: angular quantities and inertia loads"), _links(project)),
-    ]
-    loads = _loads(project)
-    if len(loads) > 1:
-        tables.append((tr("Technological loads"), loads))
-    title = 8.0
-    row = min((box.height - title * len(tables)) / sum(len(rows) for _, rows in tables), ROW)
+    """These tables, one under another."""
+    count, heads = extent(project)
+    row = min((box.height - heads) / count, ROW)
     if row < 4.0:
         raise CannotBuild(tell("the tables of the given position need more room: {row:.1f} mm for a row").format(row=row),
                           tell("make the place of given_position.values higher in templates/sheets"))
     link_marks.tell_signs(project, canvas, box)
     y = box.y1
-    for text, rows in tables:
+    for text, rows in _tables(project):
         canvas.text(complex(box.centre.real, y - 5.5), text, 3.5, "centre")
         first = (0.12 if len(rows[0]) > 3 else 0.3) * box.width
-        y = listed.table_in(canvas, Box(box.x0, y - title - row * len(rows), box.x1, y - title), rows, row, [first]).y0
+        y = listed.table_in(canvas, Box(box.x0, y - HEAD - row * len(rows), box.x1, y - HEAD), rows, row, [first]).y0
 
 
 def values_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the tables can do with, mm."""
-    tables = [_points(project), _links(project), *(loads for loads in [_loads(project)] if len(loads) > 1)]
-    rows = sum(map(len, tables))
-    return [(width, 8.0 * len(tables) + row * rows) for width, row in ((176.0, 7.0), (160.0, 6.4), (150.0, 5.6), (140.0, 4.6))]
+    count, heads = extent(project)
+    return [(width, heads + row * count) for width, row in ((176.0, 7.0), (160.0, 6.4), (150.0, 5.6), (140.0, 4.6))]
 
 
-def _points(project: Project) -> list[list[str]]:
+def _points(project: Project) -> Rows:
     """Moving points side by side: name, speed, acceleration."""
     study, m, k = project.study, project.mechanism, project.force_index
     names = [name for name in study.positions.points if name not in m.fixed and name in study.velocities.points]
@@ -73,7 +80,7 @@ def _points(project: Project) -> list[list[str]]:
     return [head * 2, *([*left, *right] for left, right in zip(cells[:half], [*cells[half:], ["", "", ""]], strict=False))]
 
 
-def _links(project: Project) -> list[list[str]]:
+def _links(project: Project) -> Rows:
     """Angular velocity, angular acceleration, force and couple of inertia of each link."""
     study, m, k = project.study, project.mechanism, project.force_index
     loads, couples, _ = study.loads
@@ -90,17 +97,15 @@ def _links(project: Project) -> list[list[str]]:
     return rows
 
 
-def _loads(project: Project) -> list[list[str]]:
+def _loads(project: Project) -> Rows:
     """Technological forces and moments with what is our own assumption among them."""
     turned = project.cycle.turned[project.force_index]
-    written: dict[str, Any] = {load.name: load for load in project.variant.force}
-    written |= {load.name: load for load in project.variant.moment}
+    accepted = {f.name: f.accepted for f in project.variant.force} | {m.name: m.accepted for m in project.variant.moment}
     rows = [[tr("Load"), tr("Magnitude"), tr("Data")]]
     for load in project.applied:
         unit = tr("N") if load.point is not None else tr("N·m")
-        data = tr_in("load", "taken") if written[load.name].accepted else tr_in("load", "given")
-        value = float(np.ravel(load.magnitude(turned))[0])
-        rows.append([link_marks.indexed(load.name), f"{number(value)} {unit}", data])
+        data = tr_in("load", "taken") if accepted[load.name] else tr_in("load", "given")
+        rows.append([link_marks.indexed(load.name), f"{number(float(np.ravel(load.magnitude(turned))[0]))} {unit}", data])
     return rows
 
 
@@ -117,12 +122,8 @@ ROWS = (7.0, 6.4, 5.6, 4.6)
 """Heights of the rows that are tried, mm."""
 BESIDE = (1, 2, 3)
 """How many quantities may stand in one row."""
-HEAD = 8.0
-"""Height of the title over the table, mm."""
 ROOMY = 8.0
 """What a column is wider than its widest text, mm."""
-
-Rows = list[list[str]]
 
 UNITS = {"deg": "°", **{unit.replace(" ", "").replace("·", "").replace("²", "2"): unit for unit in (
     marked("m"), marked("mm"), marked("cm"), marked("kg"), marked("kg·m²"), marked("N"), marked("kN"), marked("N·m"),
@@ -150,23 +151,23 @@ def links(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
 
 
 def _title(project: Project) -> str:
-    if project.given:
-        return tr("Given data")
-    return tr("Given sizes and masses") if any(link.mass for link in project.mechanism.links.values()) else tr("Given sizes")
+    heavy = any(link.mass for link in project.mechanism.links.values())
+    return tr("Given data") if project.given else tr("Given sizes and masses") if heavy else tr("Given sizes")
 
 
-def _forms(project: Project) -> Iterator[tuple[tuple[float, float], Rows, float]]:
-    """Size on paper, rows and their height, of the forms of the table: the clearest first."""
+@once
+def _forms(project: Project) -> list[tuple[tuple[float, float], Rows, float]]:
+    """Size on paper, rows and their height, of the forms of the table: the clearest first; none where there are no quantities."""
+    found = list[tuple[tuple[float, float], Rows, float]]()
     cells, title = [[symbol, value] for symbol, value in _quantities(project)], _title(project)
-    if not cells:
-        return
-    for row, beside in product(ROWS, BESIDE):
+    for row, beside in product(ROWS, BESIDE if cells else ()):
         count = -(-len(cells) // beside)
         columns = [cells[n * count:(n + 1) * count] for n in range(beside)]
         lines = [[text for column in columns for text in (column[i] if i < len(column) else ["", ""])] for i in range(count)]
         rows = [[tr("Quantity"), tr("Value")] * beside, *lines]
         width = max(sum(needs(rows, size_in(row), ROOMY)), letter(title, 3.5).width + 4.0)
-        yield (width, HEAD + row * len(rows)), rows, row
+        found.append(((width, HEAD + row * len(rows)), rows, row))
+    return found
 
 
 def _quantities(project: Project) -> Iterator[tuple[str, str]]:
@@ -175,14 +176,13 @@ def _quantities(project: Project) -> Iterator[tuple[str, str]]:
     Of the latter nothing that is zero.
     """
     if project.given:
-        for given in project.given:
-            yield ", ".join(filter(None, (given.symbol, tr(UNITS.get(given.unit, given.unit))))), written(given.number)
+        yield from ((", ".join(filter(None, (given.symbol, tr(UNITS.get(given.unit, given.unit))))), written(given.number))
+                    for given in project.given)
         return
     m = project.mechanism
-    lengths: list[Any] = [m.crank.length]
-    for g in m.groups:
-        lengths += [*g.lengths, g.offset, *getattr(g, "sides", ()), *(leg.length for leg in getattr(g, "legs", ()))]
-    lengths += [p.distance for p in m.points]
+    of_groups = [(*g.lengths, g.offset, *getattr(g, "sides", ()), *(leg.length for leg in getattr(g, "legs", ())))
+                 for g in m.groups]
+    lengths: list[Any] = [m.crank.length, *chain(*of_groups), *(p.distance for p in m.points)]
     given_of_input: list[Any] = [] if m.drive is None else [*m.drive.place, m.drive.speed, m.drive.acceleration]
     for name, at in ((name, at) for name, at in m.fixed.items() if name in link_marks.drawn_points(project.study.positions)):
         for axis, value in (("x", at.real), ("y", at.imag)):
@@ -190,13 +190,12 @@ def _quantities(project: Project) -> Iterator[tuple[str, str]]:
                 yield f"{axis}_{{{name}}}, {tr('m')}", number(value)
     links = sorted(m.links.values(), key=lambda link: (len(link.name), link.name))
     of_links = [getattr(link, name) for name in ("mass", "inertia") for link in links]
-    for unit, values in ((tr("m"), lengths), (None, given_of_input), (None, of_links)):
-        for value in values:
-            given = getattr(value, "step", value)  # one that a synthesis found has the letters of its step
-            if value and getattr(given, "symbol", ""):
-                units = {"kg": tr("kg"), "kg*m2": tr("kg·m²"), "m": tr("m"), "m/s": tr("m/s"), "m/s2": tr("m/s²")}
-                # The other way along its line is no length.
-                yield f"{given.symbol}, {unit or units[given.unit]}", number(abs(float(value)))
+    units = {"kg": tr("kg"), "kg*m2": tr("kg·m²"), "m": tr("m"), "m/s": tr("m/s"), "m/s2": tr("m/s²")}
+    for n, value in enumerate((*lengths, *given_of_input, *of_links)):
+        given = getattr(value, "step", value)  # one that a synthesis found has the letters of its step
+        if value and getattr(given, "symbol", ""):
+            # The other way along its line is no length.
+            yield f"{given.symbol}, {units['m' if n < len(lengths) else given.unit]}", number(abs(float(value)))
 
 
 MOST = 14
@@ -413,8 +412,8 @@ def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     canvas.lines(complex(box.x0 + 2.0, inside.y1 - 6.0), lines, 7.0)
     if not m.groups:
         return
-    rows = [[tr("Group"), tr("Class"), tr("Order"), tr("Kind"), tr("Pairs")]]
-    for g, found in zip(reversed(m.groups), decompose(m), strict=True):
-        rows.append([g.lettered, g.kind.roman, str(g.kind.order), found.kind.told(found), ", ".join(found.kind.joints(found))])
+    rows = [[tr("Group"), tr("Class"), tr("Order"), tr("Kind"), tr("Pairs")],
+            *([g.lettered, g.kind.roman, str(g.kind.order), found.kind.told(found), ", ".join(found.kind.joints(found))]
+              for g, found in zip(reversed(m.groups), decompose(m), strict=True))]
     widths = [0.17, 0.15, 0.2, 0.22, 0.26]
     canvas.table(complex(box.x0, inside.y1 - 16.5), widened([w * box.width for w in widths], rows, 3.5), rows, 7.0, 3.5)

@@ -18,7 +18,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.border_solver import LETTERED
 from tmm_sheets.sheets.linkage import link_marks
-from tmm_sheets.sheets.player import SHORTEST, PlanFrame, ScaleBook, extent, fit_frame, pick, raised, together
+from tmm_sheets.sheets.player import SHORTEST, PlanFrame, ScaleBook, extent, fit_frame, once, pick, raised, together
 from tmm_sheets.words import marked_n, tell, tell_n, tr
 
 if TYPE_CHECKING:
@@ -60,6 +60,7 @@ def check_number(project: Project) -> None:
         raise CannotBuild(str(project.variant.problem(message, "cycle", "positions", hint=hint)))
 
 
+@once
 def graph_force(project: Project) -> Any:
     """The force whose diagram can stand over the path: on the output, along a horizontal path, not zero all the way."""
     strokes = project.cycle.strokes
@@ -74,12 +75,12 @@ def graph_height(project: Project, options: dict[str, Any]) -> float:
     return GRAPH if options.get("graph", True) and graph_force(project) is not None else 0.0
 
 
+@once
 def graph_below(project: Project) -> bool:
     """True when the path of the output lies in the lower half of the mechanism: its graph then stands below."""
     strokes = project.cycle.strokes
     assert strokes is not None
-    real = extent([p.value for p in project.study.positions.points.values()])
-    return strokes.origin.imag < real.centre.imag
+    return strokes.origin.imag < extent([p.value for p in project.study.positions.points.values()]).centre.imag
 
 
 def positions(project: Project, canvas: ScaleBook, box: Box, options: dict[str, Any]) -> PlanFrame:
@@ -98,6 +99,7 @@ def positions_around(project: Project, options: dict[str, Any]) -> tuple[float, 
     return 8.0, 4.0 + (graph if below else 0.0), 8.0, 20.0 + (0.0 if below else graph)
 
 
+@once
 def positions_reach(project: Project) -> tuple[Points, Points]:
     """Points of all position plans and of the way of the crank pin, m, and what sticks out of each on paper, mm."""
     from tmm_sheets.sheets.linkage import diagrams  # sheets without a linkage do not wait for it
@@ -112,26 +114,19 @@ def positions_reach(project: Project) -> tuple[Points, Points]:
         # The arrow of its speed stands behind its pivot.
         behind = -np.exp(1j * project.cycle.phi[project.force_index])
         ways, beside = np.append(ways, 0), np.append(beside, behind * (SWING_ARROW + 8.0))
-    z, d = [centre + c.length * ways], [beside]
+    reaches: list[tuple[Any, Any]] = [(centre + c.length * ways, beside)]
     for name, step in link_marks.drawn_points(pos).items():
-        at = np.ravel(step.value)
         # What sticks out of a point whatever the scale: a pivot's base, a ram's body, numbers and letters.
         wide = 32.0 if any(g.kind.ram(g) and g.inner == name for g in m.groups) else 14.0
-        for offset in (wide, -wide, 8.0j, -11.0j if name in m.fixed else -9.0j):
-            z.append(at)
-            d.append(np.full(len(at), offset))
+        reaches += [(step.value, offset) for offset in (wide, -wide, 8.0j, -11.0j if name in m.fixed else -9.0j)]
     for g in (g for g in m.groups if g.kind.ram(g)):
         # Its body and the guide beside it lie along the guide, whichever way that runs.
         point, guide = next((point, guide) for point, guide in g.kind.guided(g) if point == g.inner)
         body = (link_marks.RAM + 5.0) * complex(pos.guide_directions[guide].at(project.force_index))
-        z.append(np.full(2, complex(pos.points[point].at(project.force_index))))
-        d.append(np.array([body, -body]))
-    for end in (np.ravel(end.at) for ends in link_marks.free_ends(pos).values() for end in ends):
-        z.append(end)
-        d.append(np.full(len(end), 1j))
-    at_indicator, reach = diagrams.indicator_reach(project)
-    z.append(np.asarray(at_indicator))
-    d.append(np.asarray(reach))
+        reaches.append((complex(pos.points[point].at(project.force_index)), np.array([body, -body])))
+    reaches += [(end.at, 1j) for ends in link_marks.free_ends(pos).values() for end in ends]
+    reaches.append(diagrams.indicator_reach(project))
+    z, d = zip(*(np.broadcast_arrays(np.ravel(at), offset) for at, offset in reaches), strict=True)
     return np.concatenate(z), np.concatenate(d)
 
 
@@ -193,7 +188,7 @@ class VelocityLayout:
 
     def longest(self, plan: Plan) -> float:
         """The longest vector of all, mm."""
-        return max(longest(plan, [i]) / mu for (i, _), mu in zip(self.shown, self.mus, strict=True))
+        return float((_longest(plan, [i for i, _ in self.shown]) / self.mus).max())
 
 
 def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str, Any]) -> VelocityLayout:
@@ -208,8 +203,7 @@ def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str,
     for every in range(1, len(drawn) + 1):
         shown = [one for n, one in enumerate(drawn) if n % every == 0 or one[0] == k]
         real = [plan_extent(plan, i) for i, _ in shown]
-        away = [project.cycle.turned[i] - project.cycle.turned[k] for i, _ in shown]
-        at = int(np.argmax(np.cos(away)))  # in whichever turn
+        at = int(np.argmax(np.cos([project.cycle.turned[i] - project.cycle.turned[k] for i, _ in shown])))  # in whichever turn
         need, _ = RowChoice(real).most_room(inside.width, inside.height)
         mus = list[float]()
         if wanted is None:
@@ -280,7 +274,7 @@ class RowChoice:
     """In how many rows plans of some extents may stand; what does not depend on the place is summed once."""
 
     def __init__(self, spans: Sequence[Box]) -> None:
-        self._ways = dict[int, tuple[int, dict[int, float], float, int]]()
+        self._ways = dict[int, tuple[int, list[tuple[int, float]], float, int]]()
         """By plans in a row: the rows asked for, the greatest width of rows by their plans, all heights, the rows there are."""
         for rows in range(1, len(spans) + 1):
             per_row = -(-len(spans) // rows)
@@ -289,12 +283,18 @@ class RowChoice:
                 wide = dict[int, float]()
                 for row in parted:
                     wide[len(row)] = max(wide.get(len(row), 0.0), sum(s.width for s in row))
-                self._ways[per_row] = rows, wide, sum(max(s.height for s in row) for row in parted), len(parted)
+                self._ways[per_row] = rows, [*wide.items()], sum(max(s.height for s in row) for row in parted), len(parted)
 
     def most_room(self, width: float, height: float) -> tuple[float, int]:
         """Rows with which the plans come out largest, and the scale factor they need; infinite where lettering takes the place."""
-        return min((max(_ratio(high, height - HEAD * n), *(_ratio(real, width - MARGIN * k) for k, real in wide.items())),
-                    rows) for rows, wide, high, n in self._ways.values())
+        best = inf, len(self._ways)
+        for rows, wide, high, n in self._ways.values():
+            need = high / (height - HEAD * n) if height > HEAD * n else inf
+            for count, real in wide:
+                own = real / (width - MARGIN * count) if width > MARGIN * count else inf
+                need = own if own > need else need
+            best = (need, rows) if (need, rows) < best else best
+        return best
 
 
 def velocity_spans(project: Project, options: dict[str, Any]) -> tuple[list[Box], float]:
@@ -308,7 +308,7 @@ def velocity_spans(project: Project, options: dict[str, Any]) -> tuple[list[Box]
     mu = longest(plan, shown) / LONGEST
     shares = [one / mu for one in own_factors(_sizes(real), mu)]
     enlarged = [Box(*(x / share for x in s)) for s, share in zip(real, shares, strict=True)]
-    return enlarged, max(longest(plan, [i]) / share for i, share in zip(shown, shares, strict=True))
+    return enlarged, float((_longest(plan, shown) / shares).max())
 
 
 def factors_of(frames: Sequence[PlacedFrame], plan: Plan) -> dict[int, float]:
@@ -331,11 +331,13 @@ def columns(project: Project) -> int:
 
 def longest(plan: Plan, shown: Sequence[int]) -> float:
     """Longest vector of a plan at some positions, in its unit."""
-    return max(abs(complex(seg.head.at(i)) - complex(seg.tail.at(i))) for seg in plan.segments for i in shown)
+    return float(_longest(plan, shown).max())
 
 
-def _ratio(real: float, room: float) -> float:
-    return real / room if room > 0 else inf
+def _longest(plan: Plan, shown: Sequence[int]) -> NDArray[np.float64]:
+    """The same of each of them; what is not defined there counts for nothing."""
+    lengths = [np.broadcast_to(np.abs(np.subtract(seg.head.value, seg.tail.value)), len(plan.labels)) for seg in plan.segments]
+    return np.asarray(np.fmax.reduce(lengths)[np.asarray(shown)])
 
 
 def other_stroke(project: Project) -> int:

@@ -106,11 +106,12 @@ BEYOND_SWING = 5.0
 
 
 def _paths(project: Project, s: PlayerStage, room: Box) -> None:
-    """Paths of the hinges and of the centres of mass, thin, through many positions."""
+    """Paths of the hinges and of the centres of mass, thin, through many positions; of what groups bring along if it is free."""
     turned = project.cycle.ring
     pos = project.study_at(turned, tuple(map(str, range(len(turned))))).positions
     m = pos.mechanism
-    for name in [p.name for p in m.points] + list(_free_points(m)):
+    free = (name for g in m.groups for name in g.kind.carried(g) if name not in [point for point, _ in g.kind.guided(g)])
+    for name in (*(p.name for p in m.points), *free):
         if np.ndim(pos.points[name].value):
             s.pen(pos.points[name], "curve").polyline(s.frame(np.asarray(pos.points[name].value)), "thin")
     for name in dict.fromkeys(name for g in m.groups for _, name in g.kind.guided(g)):
@@ -118,19 +119,11 @@ def _paths(project: Project, s: PlayerStage, room: Box) -> None:
             _guide_line(project.study.positions, s, name, room)
 
 
-def _free_points(m: Mechanism) -> Iterator[str]:
-    """Points that groups bring along and that slide on nothing."""
-    for g in m.groups:
-        on = [point for point, _ in g.kind.guided(g)]
-        yield from (name for name in g.kind.carried(g) if name not in on)
-
-
 def _guide_line(pos: Positions, s: PlayerStage, name: str, room: Box) -> None:
     """Centre line of a fixed guide over the path of its slider and beyond, as far as there is room: not into the title."""
     u, q = (complex(of[name].at(0)) for of in (pos.guide_directions, pos.guide_points))
     on = [point for g in pos.mechanism.groups for point, guide in g.kind.guided(g) if guide == name]
-    z = np.concatenate([np.atleast_1d(pos.points[p].value) for p in on])
-    t = ((z - q) * np.conj(u)).real
+    t = ((np.concatenate([np.atleast_1d(pos.points[p].value) for p in on]) - q) * np.conj(u)).real
     inside = segment_inside(room, s.frame(q + u * np.nanmin(t)) - 24.0 * u, s.frame(q + u * np.nanmax(t)) + 24.0 * u)
     if inside is not None:
         s.pen(pos.guide_directions[name], "axis").line(*inside, "centre")
@@ -146,8 +139,7 @@ def _position_numbers(project: Project, s: PlayerStage) -> None:
         paths.append(z)
     on = list(sliding.values())
     for name, guide in sliding.items():
-        u = complex(pos.guide_directions[guide].at(0))
-        n = _upper_side(u)
+        n = _upper_side(complex(pos.guide_directions[guide].at(0)))
         if on.count(guide) > 1:
             _shared_path(project, s, name, n * (1 if name == next(p for p, g in sliding.items() if g == guide) else -1))
         else:
@@ -217,8 +209,7 @@ def own_path(project: Project, s: PlayerStage, name: str, n: complex, *, whose: 
     z = np.asarray(s.frame(project.study.positions.points[name].value))
     for i, _ in cycle.drawn:
         _path_mark(s.position(i), name, n)
-    marks = [i for i, _ in cycle.drawn if i != s.k]
-    for side, there in zip((n, -n), by_stroke(project, name, marks), strict=True):
+    for side, there in zip((n, -n), by_stroke(project, name, [i for i, _ in cycle.drawn if i != s.k]), strict=True):
         for crowd in crowds(there, z):
             at = complex(sum(z[i] for i in crowd)) / len(crowd)
             said = graphs.ranged([cycle.labels[i] for i in crowd])
@@ -331,14 +322,12 @@ def _free_arrows(shape: link_marks.Shape, s: PlayerStage, pos: Positions, busy: 
         longest = max(28.0, 0.9 * abs(tip - base))
         places = [((base, r, u), (base, r + 8.0, u)) for r in (20.0, 28.0, 36.0, 44.0, 52.0, 60.0) if r + 8.0 <= longest]
     else:
-        pivot = s.at(pos.mechanism.crank.pivot)
-        n = 1j * u if (np.conj(1j * u) * (base - pivot)).real > 0 else -1j * u
+        n = 1j * u if (np.conj(1j * u) * (base - s.at(pos.mechanism.crank.pivot))).real > 0 else -1j * u
         middles = [base + t * (tip - base) for t in (0.38, 0.5, 0.28, 0.62, 0.72, 0.2)]
         places = [((middle, 6.0, n), (middle, 6.0, -n)) for middle in middles]
 
     def room(arrows: tuple[_Arrow, _Arrow]) -> float:
-        at = np.concatenate([_along_arrow(arrow) for arrow in arrows])
-        return min(CLEAR, float(np.abs(at[:, None] - busy).min()))
+        return min(CLEAR, float(np.abs(np.concatenate([_along_arrow(arrow) for arrow in arrows])[:, None] - busy).min()))
 
     return max(places, key=room)
 
@@ -464,8 +453,7 @@ def _over_way(project: Project, s: PlayerStage, along: Any, diagram: tuple[Any, 
     strokes = project.cycle.strokes
     assert strokes is not None
     acting = np.flatnonzero(values)
-    path = project.study_at(turned, tuple("" for _ in turned)).positions.points[strokes.output]
-    xs = along(np.real(s.frame(path.value)))
+    xs = along(np.real(s.frame(project.study_at(turned, tuple("" for _ in turned)).positions.points[strokes.output].value)))
     curve = xs[acting] + 1j * (y0 + values[acting] / mu)
     return np.array([complex(curve[0].real, y0), *curve, complex(curve[-1].real, y0)]), turned[acting]
 
@@ -513,8 +501,7 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
         canvas.of = f"velocity plan {label}"
         if many:
             canvas.begin(place, tr("Velocity polygon, position {label}").format(label=label))
-        s = stage(canvas, plan, index, PlanFrame(scale, middle - span.centre))
-        for name in _draw_plan(s, "p", symbols_at=not many):
+        for name in _draw_plan(stage(canvas, plan, index, PlanFrame(scale, middle - span.centre)), "p", symbols_at=not many):
             tiny.setdefault(name, []).append(label)
         foot = complex(middle.real, place.y0 + spare / 2 + 2.0)
         if mu in others:
@@ -650,12 +637,10 @@ def enlarged_velocities_sizes(project: Project, canvas: Canvas, options: dict[st
     if drawn >= SMALL and max(kinematic_frames.longest(plan, [i]) / own for i, own in drawn_with.items()) >= VECTOR.least:
         return []
     around = kinematic_frames.MARGIN, kinematic_frames.HEAD + TITLED
-    longest, sizes = max(real.width, real.height), list[tuple[float, float]]()
     own = VECTOR.least / (kinematic_frames.longest(plan, [k]) / mu)
-    for times_as_large in reversed([t for t in ENLARGED if own <= t <= kinematic_frames.LONGEST / drawn] or ENLARGED[:1]):
-        size = times_as_large * drawn
-        sizes.append((max(size * real.width / longest + around[0], 90.0), size * real.height / longest + around[1]))
-    return sizes
+    longest, fit = max(real.width, real.height), [t for t in ENLARGED if own <= t <= kinematic_frames.LONGEST / drawn]
+    return [(max(size * real.width / longest + around[0], 90.0), size * real.height / longest + around[1])
+            for size in (t * drawn for t in reversed(fit or ENLARGED[:1]))]
 
 
 TITLED = 22.0
@@ -730,8 +715,7 @@ def _title_of_path(name: str) -> str:
 def _along(project: Project, name: str) -> complex:
     """Unit vector along the path of a slider, to the right or, of an upright one, upwards."""
     pos = project.study.positions
-    guide = on_fixed_guides(pos.mechanism)[name]
-    u = complex(pos.guide_directions[guide].at(0))
+    u = complex(pos.guide_directions[on_fixed_guides(pos.mechanism)[name]].at(0))
     return u if u.real > 1e-9 or (u.real > -1e-9 and u.imag > 0) else -u
 
 

@@ -15,7 +15,7 @@ from tmm_sheets.construction.scale import handy
 from tmm_sheets.construction.step import Segment, symbol
 from tmm_sheets.numbers import is_zero
 from tmm_sheets.sheets.linkage import link_marks
-from tmm_sheets.sheets.player import extent, needed
+from tmm_sheets.sheets.player import extent, needed, once
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -73,6 +73,9 @@ class Couple:
 
 FAR = 0.75
 """Largest distance of a guide's reaction from its block, in sizes of the mechanism; beyond it a force and a couple are shown."""
+
+
+@once
 def outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Shown], list[Couple]]:
     """External and inertia forces of a group's links and the reactions of the links outside it."""
     forces = project.study.forces
@@ -106,8 +109,7 @@ def _hinge(project: Project, about: Step, reaction: OuterReaction, k: int) -> li
     if part is None:
         return [Shown(f"F̅_{{{name}}}", at, total, step, step)]
     tangential = complex(part.at(k))
-    normal = study.forces.about_special(about) or step
-    return [Shown(f"F̅_{{{name}}}^n", at, total - tangential, step, normal),
+    return [Shown(f"F̅_{{{name}}}^n", at, total - tangential, step, study.forces.about_special(about) or step),
             Shown(f"F̅_{{{name}}}^τ", at, tangential, part, study.forces.sum_about(about, part) or step)]
 
 
@@ -179,11 +181,13 @@ def loaded(points: Iterable[complex], shown: list[Shown], about: complex, more: 
 
     ``armed`` are those whose arms are drawn; all without it.
     """
-    rest = [*((force.foot(about), 0j) for force in (shown if armed is None else armed)), *more]
-    z, d = _reach(points, shown, share)
-    return [*z, *(z for z, _ in rest)], [*d, *(d for _, d in rest)]
+    every = [(s.at, arrow * (1 + 7.0 / abs(arrow))) for s, arrow in arrows(shown, share)]  # with their labels
+    every += [(point, beside) for point in points for beside in (11.0 + 0j, -11.0 + 0j, 8.0j, -11.0j)]  # symbols of pairs
+    every += [*((force.foot(about), 0j) for force in (shown if armed is None else armed)), *more]
+    return [z for z, _ in every], [d for _, d in every]
 
 
+@once
 def scheme(project: Project, g: StructuralGroup, k: int, share: float = 1.0) -> tuple[list[complex], list[complex]]:
     """The same for the loaded scheme of a group, its arrows this ``share`` of their usual length."""
     pos = project.study.positions
@@ -195,6 +199,7 @@ def scheme(project: Project, g: StructuralGroup, k: int, share: float = 1.0) -> 
     return loaded([*points, *(force.at for force in shown)], shown, about, free, with_arms(project, g, shown), share)
 
 
+@once
 def crowd(project: Project, g: StructuralGroup, k: int) -> tuple[float, int]:
     """Size of a group from hinge to hinge, m, and how many forces crowd along it on its scheme."""
     pos = project.study.positions
@@ -203,6 +208,7 @@ def crowd(project: Project, g: StructuralGroup, k: int) -> tuple[float, int]:
     return max(real.width, real.height), len(outer_forces(project, g, k)[0])
 
 
+@once
 def share_of_arrows(project: Project, g: StructuralGroup, k: int, box: Box) -> float:
     """Share of the usual length of the arrows on a group's scheme.
 
@@ -221,6 +227,7 @@ def share_of_arrows(project: Project, g: StructuralGroup, k: int, box: Box) -> f
     return SHORTER if crowd(project, g, k)[0] < WANTED * whole and whole > GAIN * finer * (1 - 1e-9) else 1.0
 
 
+@once
 def on_crank(project: Project, k: int) -> list[Shown]:
     """Forces on the initial link, that of the frame the last."""
     forces, c = project.study.forces, project.mechanism.crank
@@ -242,6 +249,7 @@ def crank_scheme(project: Project, k: int, shown: list[Shown]) -> tuple[list[com
     return loaded([pivot, *ends, *(force.at for force in shown), *wheel], shown, pivot, [(pivot, turning)])
 
 
+@once
 def on_lever(project: Project, k: int) -> list[Shown]:
     """Forces hung on Zhukovsky's lever."""
     lv = project.study.lever
@@ -252,8 +260,7 @@ def on_lever(project: Project, k: int) -> list[Shown]:
 
 def balancing_sign(project: Project) -> str:
     """Sign of what drives the crank: the project's own, in every language as it stands; "Mур" or "Fур" of one without."""
-    own = {"Mур": tr("Mb"), "Fур": tr("Fb")}
-    return link_marks.indexed(own.get(project.balancing, project.balancing))
+    return link_marks.indexed({"Mур": tr("Mb"), "Fур": tr("Fb")}.get(project.balancing, project.balancing))
 
 
 def flat(sign: str) -> str:
@@ -316,18 +323,6 @@ def arrows(shown: Iterable[Shown], share: float = 1.0) -> list[tuple[Shown, comp
                 length = abs(arrow) + 9.0
         found.append((s, length * s.along))
     return found
-
-
-def _reach(points: Iterable[complex], shown: Iterable[Shown], share: float) -> tuple[list[complex], list[complex]]:
-    """Points and what sticks out of them on paper: arrows with their labels, symbols of pairs."""
-    z, d = [], []
-    for s, arrow in arrows(shown, share):
-        z.append(s.at)
-        d.append(arrow * (1 + 7.0 / abs(arrow)))
-    for p in points:
-        z += [p, p, p, p]
-        d += [11.0 + 0j, -11.0 + 0j, 8.0j, -11.0j]
-    return z, d
 
 
 SCHEME, CRANK, LEVER = (3.0, 5.0, 3.0, 19.0), (3.0, 3.0, 3.0, 19.0), (2.0, 2.0, 2.0, 19.0)

@@ -92,15 +92,10 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
                           tell("take an arrangement with the view kinetics.groups, or leave kinetics.group out of it"))
     g = tuple(reversed(m.groups))[nth - 1]
     plans = loaded_plans(project, g.kind.force_plans(g))
-    view = ViewPlace("kinetics.group", box, options)
-    left, *places = options.get("places") or linkage_sizes.group(project, view).parts(box)
-    forms = moments.of_group(project, g)
-    under = places.pop(0) if forms else None
-    _scheme(project, canvas, left, under, g, k)
-    for line in jumps(project, g.links):
+    left, *places = options.get("places") or linkage_sizes.group(project, ViewPlace("kinetics.group", box, options)).parts(box)
+    _scheme(project, canvas, left, places.pop(0) if moments.of_group(project, g) else None, g, k)
+    for line in (*jumps(project, g.links), *([] if plans else [tr("There are no forces in this position")])):
         canvas.note(left, line)
-    if not plans:
-        canvas.note(left, tr("There are no forces in this position"))
     for fp, place in zip(plans, places, strict=True):
         _force_plan(project, canvas, place, fp, k)
 
@@ -186,27 +181,23 @@ def _turning(s: PlayerStage, at: complex, radius: float, towards: complex, coupl
 def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int, scale: Scale) -> None:
     """What the moment equations of a group gave: tangential parts of its reactions, arms of its outer guides' reactions."""
     forces, m = project.study.forces, project.mechanism
-    said = []
-    for part in forces.from_moments:
-        if part.link in g.links:
-            value = newtons(clean(abs(complex(part.vector.at(k))), forces.force_size(k)))
-            said.append(tr("ΣM_{centre} = 0: {force} = {value} N").format(
-                centre=part.centre, force=f"F_{{{pair_index(part.link, part.source)}}}^τ", value=value))
     about = g.kind.about(g)
-    if about in project.study.positions.special:
-        special = project.study.positions.special[about]
-        if (normal := forces.about_special(special.step)) is not None:
-            value = newtons(clean(abs(complex(normal.at(k))), forces.force_size(k)))
-            said.append(tr("ΣM_{centre} = 0: {force} = {value} N").format(
-                centre=f"{{{about}}}", force=normal_sign(project, special.third), value=value))
+    found = [(part.centre, f"F_{{{pair_index(part.link, part.source)}}}^τ", part.vector) for part in forces.from_moments
+             if part.link in g.links]
+    special = project.study.positions.special.get(about)
+    if special is not None and (normal := forces.about_special(special.step)) is not None:
+        found.append((f"{{{about}}}", normal_sign(project, special.third), normal))
+    said = [tr("ΣM_{centre} = 0: {force} = {value} N").format(
+                centre=centre, force=sign, value=newtons(clean(abs(complex(step.at(k))), forces.force_size(k))))
+            for centre, sign, step in found]
     for pair in (pair_index(link, m.guides[guide].link) for guide in g.guides for link in g.links):
         arm = forces.arms.get(f"h{pair}")
         length = scale.mm(abs(float(arm.at(k)))) if arm is not None else np.inf
         if 0.05 < length < max(box.width, box.height):
             said.append(tr("ΣM_{centre} = 0: h_{{{index}}} = {value} mm").format(centre=about, index=pair, value=fixed(length, 1)))
-    for couple in outer_forces(project, g, k)[1]:
-        said.append(tr("ΣM_{centre} = 0: {couple} = {value} N·m").format(
-            centre=about if len(about) == 1 else f"{{{about}}}", couple=couple.symbol, value=number(abs(couple.value), 5)))
+    said += [tr("ΣM_{centre} = 0: {couple} = {value} N·m").format(
+                 centre=about if len(about) == 1 else f"{{{about}}}", couple=couple.symbol, value=number(abs(couple.value), 5))
+             for couple in outer_forces(project, g, k)[1]]
     if said:
         _fitted(canvas, complex(box.centre.real, box.y0), "; ".join(said), 3.5, box.width - 4.0)
 
@@ -238,10 +229,9 @@ def draw_arms(s: PlayerStage, about: complex, shown: Sequence[Shown], points: It
         pen.dot(foot, 0.35, "thin")
         # On an arm that runs on over a shorter one its letter stands beyond the end of that.
         first = centre + _covered(foot - centre, [f - centre for f in feet]) * (foot - centre)
-        places = [first + t * (foot - first) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
-        at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
-        text = " = ".join(dict.fromkeys([arm_sign(force.symbol), *same]))
-        pen.label(at, text, 1j * (foot - centre), 2.5, 0.8, thin=KEPT_OFF)
+        places = first + np.array((0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)) * (foot - first)
+        at = complex(places[np.abs(places[:, None] - np.array(busy)).min(axis=1).clip(max=6.0).argmax()])
+        pen.label(at, " = ".join(dict.fromkeys([arm_sign(force.symbol), *same])), 1j * (foot - centre), 2.5, 0.8, thin=KEPT_OFF)
         busy.append(at)
 
 
@@ -286,8 +276,7 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     if small:
         canvas.note(box, small)
     # Equation and values close under a polygon that does not fill the height of its place.
-    lowest = min(frame(z).imag for z in points.values())
-    low = max(box.y0, lowest - ROOM - max(AROUND[1], LINE * len(lines)))
+    low = max(box.y0, min(frame(z).imag for z in points.values()) - ROOM - max(AROUND[1], LINE * len(lines)))
     for k, line in enumerate(reversed(lines)):
         canvas.text(complex(box.centre.real, low + 3.0 + LINE * k), line, height, "centre")
 
@@ -388,8 +377,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     k, study, c, driver = project.force_index, project.study, project.mechanism.crank, project.driver
     forces, pos = study.forces, study.positions
     plans = loaded_plans(project, [c.link])
-    view = ViewPlace("kinetics.crank", box, options)
-    left, *places = options.get("places") or linkage_sizes.crank(project, view).parts(box)
+    left, *places = options.get("places") or linkage_sizes.crank(project, ViewPlace("kinetics.crank", box, options)).parts(box)
     forms = moments.of_crank(project)
     under = places.pop(0) if forms else None
     centre, pins = pos.points[c.pivot], [pos.points[name] for name in link_marks.crank_pins(pos)]
@@ -415,11 +403,9 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     moment = None if driver is not None else forces.balancing
     if moment is not None and not is_zero(moment.at(k), forces.moment_size(k)):
         _turning(s, s.at(centre), 24.0, away, Couple(balancing_sign(project), 0j, float(moment.at(k)), moment))
-    for line in jumps(project, [c.link]):
+    for line in (*jumps(project, [c.link]), *([] if plans else [tr("There are no forces in this position")])):
         canvas.note(left, line)
     said = _crank_couples(project, s, s.at(centre), away)
-    if not plans:
-        canvas.note(left, tr("There are no forces in this position"))
     low = _taken(left, frame, around, CRANK)
     if not _equations(canvas, low, under, forms) and said:
         _fitted(canvas, complex(low.centre.real, low.y0), "; ".join(said), 3.5, low.width - 4.0)
@@ -490,8 +476,7 @@ def _turned_letters(s: PlayerStage, turned: PlayerStage, points: Mapping[str, St
         here, first = every[names[same[0]]]
         at = here.at(first)
         here.dot(first)
-        text = ", ".join(f"{link_marks.indexed(names[i])}′" for i in same)
-        here.letters(first, text, at - s.frame(0j), gap=1.2)
+        here.letters(first, ", ".join(f"{link_marks.indexed(names[i])}′" for i in same), at - s.frame(0j), gap=1.2)
 
 
 def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

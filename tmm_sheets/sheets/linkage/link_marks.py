@@ -14,7 +14,7 @@ from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.sheets.components import listed
-from tmm_sheets.sheets.player import PlayerStage
+from tmm_sheets.sheets.player import PlayerStage, once
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -48,14 +48,11 @@ class Shape:
         return (self.bar[0], self.bar[-1]) if len(self.bar) > 1 else (self.arms[1][0], self.arms[1][1])
 
 
+@once
 def shapes(pos: Positions) -> list[Shape]:
     """Shapes of all links, crank first."""
-    m = pos.mechanism
-    c = m.crank
-    found = [_bar(m, c.link, (c.pivot, c.pin))]
-    for g in m.groups:
-        found += [_shape(pos, outline) for outline in g.kind.outlines(pos, g)]
-    return found
+    m, c = pos.mechanism, pos.mechanism.crank
+    return [_bar(m, c.link, (c.pivot, c.pin)), *(_shape(pos, outline) for g in m.groups for outline in g.kind.outlines(pos, g))]
 
 
 def _shape(pos: Positions, o: Outline) -> Shape:
@@ -97,6 +94,7 @@ def _far_centre(pos: Positions, shape: Shape) -> tuple[str, ...]:
     return (name,) if np.nanmin(np.abs(np.asarray(pos.points[name].value) - base)) > max(others) else ()
 
 
+@once
 def drawn_points(pos: Positions) -> dict[str, Step]:
     """Points of the mechanism: a fixed one of the file that carries nothing is none."""
     m = pos.mechanism
@@ -220,6 +218,7 @@ class FreeEnd(NamedTuple):
     at: Points
 
 
+@once
 def free_ends(pos: Positions) -> dict[str, list[FreeEnd]]:
     """Ends of bars and arms along which slider blocks slide: they keep their lengths all round the turn.
 
@@ -325,11 +324,10 @@ def _draw_of_cylinder(s: PlayerStage, pos: Positions, link: str, style: str) -> 
         s.line(line, at, pin - symbols.HINGE * u, style, "link")
         s.line(line, at + 0.9 * across, at - 0.9 * across, style, "link")
         return
-    s.line(line, far + symbols.HINGE * u, bottom, style, "link")
-    for a, b in ((bottom + across, bottom - across), (bottom + across, mouth + across), (bottom - across, mouth - across)):
+    walls = (bottom + across, mouth + across), (bottom - across, mouth - across)
+    lips = ((mouth + side * across, mouth + side * 0.3 * across) for side in (1, -1))
+    for a, b in ((far + symbols.HINGE * u, bottom), (bottom + across, bottom - across), *walls, *lips):
         s.line(line, a, b, style, "link")
-    for side in (1, -1):
-        s.line(line, mouth + side * across, mouth + side * 0.3 * across, style, "link")
 
 
 CYLINDER = 3.0

@@ -4,15 +4,27 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from math import ceil, floor, inf, log10
-from typing import TYPE_CHECKING
+from math import inf
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.box import Box
-from tmm_sheets.construction.scale import HANDY
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.sheets import border_solver
-from tmm_sheets.sheets.border_solver import CRANK, SHARE, VECTOR, BorderNode, Need, fixed, joined, leaf, reaching, rounded_up, rows
-from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames, link_marks, moments
+from tmm_sheets.sheets.border_solver import (
+    CRANK,
+    SHARE,
+    VECTOR,
+    BorderNode,
+    Need,
+    fixed,
+    joined,
+    leaf,
+    reaching,
+    rounded_down,
+    rounded_up,
+    rows,
+)
+from tmm_sheets.sheets.linkage import given_position, kinematic_frames, kinetic_frames, link_marks, moments
 from tmm_sheets.sheets.linkage import synthesis as triads_by_hand
 from tmm_sheets.sheets.player import extent
 from tmm_sheets.sheets.views import ViewPlace
@@ -71,21 +83,18 @@ def velocities(project: Project, view: ViewPlace) -> BorderNode:
         need = Need((spans[0].width, spans[0].height), (around[0], around[1] + title), (80.0, 80.0), finest=finest)
         return leaf(view.box, need.ending(coarsest, LARGEST))
 
-    choice = kinematic_frames.RowChoice(spans)
-
-    @cache
-    def in_place(width: int, height: int) -> float:
-        return choice.most_room(width, height - title)[0]
+    in_place = view.known.setdefault("velocities", cache(kinematic_frames.RowChoice(spans).most_room))
 
     def scale(width: float, height: float) -> float:
-        return in_place(round(width), round(height))
+        found: float = in_place(round(width), round(height) - title)[0]
+        return found
 
     def drawn(width: float, height: float) -> float:
         mu = scale(width, height)
         if not 0 < mu < inf:
             return 1.0
         mu = rounded_up(max(mu, finest))
-        return sum((s.width / mu + around[0]) * (s.height / mu + around[1]) for s in spans) + title * width
+        return sum([(s.width / mu + around[0]) * (s.height / mu + around[1]) for s in spans]) + title * width
 
     # All velocities are measured on them, and all that follows from these.
     need = Need(least=(120.0, 60.0), drawn=drawn, scale=scale)
@@ -121,18 +130,9 @@ def group(project: Project, view: ViewPlace) -> BorderNode:
     if not 1 <= nth <= len(project.mechanism.groups):
         return fixed(view.box)
     g = tuple(reversed(project.mechanism.groups))[nth - 1]
-    box, share = view.box, float(view.options.get("scheme", 0.45))
-    under = moments.room(project, moments.of_group, g)
-    reach = kinetic_frames.scheme(project, g, k)
-    need = _readable(reaching(_over(box, under), *reach, kinetic_frames.SCHEME, (92.0, 80.0)),
-                     *kinetic_frames.crowd(project, g, k), OF_FORCE)
-    plans = [_force_plan(project, fp, k) for fp in kinetic_frames.loaded_plans(project, g.kind.force_plans(g))]
-    return _parted(box, share, need, plans, under)
-
-
-def _over(box: Box, under: Sequence[Form]) -> Box:
-    """What the equations ``under`` a figure leave of its box, half of it at least."""
-    return box._replace(y0=min(box.y0 + under[0].height, box.centre.imag)) if under else box
+    plans = kinetic_frames.loaded_plans(project, g.kind.force_plans(g))
+    return _figure(project, view, kinetic_frames.scheme(project, g, k), kinetic_frames.SCHEME, (92.0, 80.0), (moments.of_group, g),
+                   plans, float(view.options.get("scheme", 0.45)), (*kinetic_frames.crowd(project, g, k), OF_FORCE))
 
 
 def each_group(project: Project, view: ViewPlace) -> list[ViewPlace]:
@@ -140,9 +140,8 @@ def each_group(project: Project, view: ViewPlace) -> list[ViewPlace]:
     box, count, columns = view.box, len(project.mechanism.groups), int(view.options.get("columns", 1))
     rows = -(-count // max(columns, 1))
     wide, high = box.width / columns, box.height / max(rows, 1)
-    corners = [(box.x0 + (i // rows) * wide, box.y1 - (i % rows) * high) for i in range(count)]
     return [ViewPlace("kinetics.group", Box(x, y - high, x + wide, y), {"scheme": 0.45, "group": i})
-            for i, (x, y) in enumerate(corners, 1)]
+            for i, (x, y) in enumerate([(box.x0 + (i // rows) * wide, box.y1 - (i % rows) * high) for i in range(count)], 1)]
 
 
 def _readable(need: Need, size: float, forces: int, each: float) -> Need:
@@ -153,25 +152,34 @@ def _readable(need: Need, size: float, forces: int, each: float) -> Need:
     """
     if not forces or not size > border_solver.LINKS * max(need.span):
         return need
-    coarsest = size / (each * forces)
-    power = 10.0 ** floor(log10(coarsest))
-    mu = power * max(factor for factor in HANDY if factor * power <= coarsest * (1 + 1e-9))
+    mu = rounded_down(size / (each * forces))
     wide, high = (max(least, span / mu + beside) for least, span, beside in zip(need.least, need.span, need.around, strict=True))
     return replace(need, least=(wide, high))
+
+
+def _figure(project: Project, view: ViewPlace, around: tuple[Sequence[complex], Sequence[complex]],
+            inset: tuple[float, float, float, float], least: tuple[float, float], texts: Sequence[Any],
+            plans: Sequence[ForcePlan] = (), share: float = 1.0, readable: tuple[float, int, float] = (0.0, 0, 0.0), *,
+            finest: float = 0.0, weight: float = 1.0) -> BorderNode:
+    """A figure of the force study, ``around`` are its points and what reaches from them, with its equations and force plans.
+
+    ``texts`` are the function of the equations and what it asks for, ``readable`` size, forces and the room of each along it.
+    """
+    under, box = moments.room(project, *texts), view.box
+    left = box._replace(y0=min(box.y0 + under[0].height, box.centre.imag)) if under else box  # half of it at least
+    need = replace(_readable(reaching(left, *around, inset, least), *readable), finest=finest)
+    return _parted(box, share, need, [_force_plan(project, fp, project.force_index) for fp in plans], under, weight)
 
 
 def _parted(box: Box, share: float, scheme: Need, plans: list[Need], under: Sequence[Form],
             weight: float = 1.0) -> BorderNode:
     """A figure with its equations ``under`` it and its plans beside it or under both, as costs least."""
-    def node(axis: int, inner: int) -> BorderNode:
-        own = border_solver.over(leaf(box, scheme, share * weight), under)
-        if not plans:
-            return own
-        each = (1.0 - share) / len(plans)
-        of_plans = joined(inner, [leaf(box, need, each) for need in plans], [1.0] * len(plans), 4.0)
-        return joined(axis, [own, of_plans], [share, 1.0 - share], 4.0)
-
-    found = [node(axis, inner) for axis, inner in ((0, 1), (0, 0), (1, 0))[::3 - min(len(plans), 2)]]
+    own = border_solver.over(leaf(box, scheme, share * weight), under)
+    if not plans:
+        return own
+    of_plans = [leaf(box, need, (1.0 - share) / len(plans)) for need in plans]
+    found = [joined(axis, [own, joined(inner, of_plans, [1.0] * len(plans), 4.0)], [share, 1.0 - share], 4.0)
+             for axis, inner in ((0, 1), (0, 0), (1, 0))[::3 - min(len(plans), 2)]]
     for tree in found:
         for _ in range(2):
             tree.settle(box.width, box.height, (16.0, 8.0, 4.0))
@@ -191,26 +199,18 @@ def _force_plan(project: Project, fp: ForcePlan, k: int) -> Need:
 
 def crank(project: Project, view: ViewPlace) -> BorderNode:
     """The crank with its force plan."""
-    k = project.force_index
-    share = float(view.options.get("scheme", 0.5))
-    reach = kinetic_frames.crank_scheme(project, k, kinetic_frames.on_crank(project, k))
-    under = moments.room(project, moments.of_crank)
-    need = reaching(_over(view.box, under), *reach, kinetic_frames.CRANK, (76.0, 80.0))
-    scheme = replace(need, finest=kinetic_frames.finest_crank(project))
+    around = kinetic_frames.crank_scheme(project, project.force_index, kinetic_frames.on_crank(project, project.force_index))
     plans = kinetic_frames.loaded_plans(project, [project.mechanism.crank.link])
-    return _parted(view.box, share, scheme, [_force_plan(project, fp, k) for fp in plans], under)
+    return _figure(project, view, around, kinetic_frames.CRANK, (76.0, 80.0), (moments.of_crank,), plans,
+                   float(view.options.get("scheme", 0.5)), finest=kinetic_frames.finest_crank(project))
 
 
 def lever(project: Project, view: ViewPlace) -> BorderNode:
-    """Zhukovsky's lever."""
-    k = project.force_index
-    reach = kinetic_frames.lever_scheme(project, k, kinetic_frames.on_lever(project, k))
-    # Every force and its arm hangs on it: no view has more labels.
-    under = moments.room(project, moments.of_lever)
-    need = reaching(_over(view.box, under), *reach, kinetic_frames.LEVER, (112.0, 100.0))
+    """Zhukovsky's lever: every force and its arm hangs on it, no view has more labels."""
+    k, shown = project.force_index, kinetic_frames.on_lever(project, project.force_index)
     points = extent([complex(step.at(k)) for step in project.study.lever.points.values()])
-    need = _readable(need, max(points.width, points.height), len(kinetic_frames.on_lever(project, k)), ON_LEVER)
-    return _parted(view.box, 1.0, need, [], under, 3.0)
+    return _figure(project, view, kinetic_frames.lever_scheme(project, k, shown), kinetic_frames.LEVER, (112.0, 100.0),
+                   (moments.of_lever,), readable=(max(points.width, points.height), len(shown), ON_LEVER), weight=3.0)
 
 
 def structure(project: Project, view: ViewPlace) -> BorderNode:
@@ -244,11 +244,7 @@ def results(project: Project, view: ViewPlace) -> BorderNode:
 
 def values(project: Project, view: ViewPlace) -> BorderNode:
     """Tables of points, links and loads."""
-    points, links = len(project.study.positions.points), len(project.mechanism.links)
-    loads = len(project.applied)
-    count = 1 + ceil((points - len(project.mechanism.fixed)) / 2) + 1 + links + (1 + loads if loads else 0)
-    tables = 3 if loads else 2
-    return rows(project, view, count, 8.0 * tables, (5.0, 7.0), (140.0, 200.0))
+    return rows(project, view, *given_position.extent(project), (5.0, 7.0), (140.0, 200.0))
 
 
 def synthesis(project: Project, view: ViewPlace) -> BorderNode | None:

@@ -24,8 +24,8 @@ from tmm_sheets.sheets.border_solver import Form as Needed
 from tmm_sheets.sheets.components.listed import Form
 from tmm_sheets.sheets.linkage.kinetic_frames import arm_sign, balancing_sign, flat, normal_sign, on_lever
 from tmm_sheets.sheets.linkage.link_marks import indexed
-from tmm_sheets.sheets.player import extent
-from tmm_sheets.words import SHEETS, marked, on_paper, paper, tr
+from tmm_sheets.sheets.player import extent, once
+from tmm_sheets.words import SHEETS, marked, on_paper, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import StructuralGroup
@@ -61,32 +61,29 @@ class Term(NamedTuple):
     values: tuple[float, ...]
 
 
+@once
 def of_group(project: Project, g: StructuralGroup) -> list[Equations]:
     """Equations of a group, with those of its guides' reactions if there is room; rather without these than in small letters."""
-    ways = (True, False) if g.guides else (False,)
-    return _once(project, g.name, lambda: [[*_of_group(project, g, guides)] for guides in ways])
+    return [*_forms([[*_of_group(project, g, guides)] for guides in ((True, False) if g.guides else (False,))])]
 
 
+@once
 def of_crank(project: Project) -> list[Equations]:
     """The equation that gives the balancing moment."""
-    return _once(project, "crank", lambda: [[*_of_crank(project)]])
+    return [*_forms([[*_of_crank(project)]])]
 
 
+@once
 def of_lever(project: Project) -> list[Equations]:
     """The equation of the lever, rather in numbers alone than in small letters; its arms about as they will be."""
     points = extent([complex(step.at(project.force_index)) for step in project.study.lever.points.values()])
-    about = Scale("μ_V", max(points.width, points.height) / USUAL or 1.0, "")
-    return _once(project, "lever", lambda: _lever_texts(project, about))
+    return [*at_scale(project, Scale("μ_V", max(points.width, points.height) / USUAL or 1.0, ""))]
 
 
 def at_scale(project: Project, scale: Scale) -> Iterator[Equations]:
     """The same at the scale factor of the lever."""
-    return _forms(_lever_texts(project, scale))
-
-
-def _lever_texts(project: Project, scale: Scale) -> list[list[str]]:
     every = _lever_lines(project, scale)
-    return [every, every[1:]]
+    return _forms([every, every[1:]])
 
 
 USUAL = 110.0
@@ -95,15 +92,6 @@ USUAL = 110.0
 
 TITLES = {"moments": marked("Equations of moments"), "moments of the lever": marked("Equation of the lever")}
 """What the equations of a plan are called in the files."""
-
-
-def _once(project: Project, name: str, texts: Callable[[], list[list[str]]]) -> list[Equations]:
-    """The forms of some equations, found once for a project and language: every way to arrange a sheet asks for them."""
-    key = name, paper()
-    if key not in project.expected:
-        project.expected[key] = list(_forms(texts()))
-    found: list[Equations] = project.expected[key]
-    return found
 
 
 def room(project: Project, of: Callable[..., list[Equations]], *about: Any) -> list[Needed]:
@@ -115,11 +103,13 @@ def room(project: Project, of: Callable[..., list[Equations]], *about: Any) -> l
 
 def _forms(texts: Sequence[list[str]]) -> Iterator[Equations]:
     """Each equation in one line, then broken, then in small letters."""
-    last: list[str] | None = None
+    last, wide = list[str](), inf
     for (height, step, price), (n, lines), width in product(LETTERS, enumerate(texts), WIDTHS):
-        parts = [part for line in lines for part in broken(line, width, height)]
+        # What has room as it was broken last is broken no further.
+        parts = last if wide <= width < inf else [part for line in lines for part in broken(line, width, height)]
         if parts and parts != last:
             form, last = Form([parts], height, step, 0.0), parts
+            wide = form.size[0] - 6.0
             yield Equations(form, Needed(*form.size, price * FEWER ** n))
 
 
@@ -133,13 +123,6 @@ def draw(canvas: Canvas, box: Box, forms: Iterable[Equations], of: str) -> bool:
     at = complex(box.centre.real - form.size[0] / 2 + 3.0, box.y1 - 0.8 * form.pitch)
     canvas.lines(at, form.columns[0], form.pitch, form.height)
     return True
-
-
-def _lines(project: Project, guides: bool = False) -> Iterator[str]:
-    """All equations, with those that give where the reactions of fixed ``guides`` act."""
-    for g in reversed(project.mechanism.groups):  # as the reactions are found: the crank's neighbours last
-        yield from _of_group(project, g, guides)
-    yield from _of_crank(project)
 
 
 def _of_group(project: Project, g: StructuralGroup, guides: bool = False) -> Iterator[str]:
@@ -264,8 +247,7 @@ def _terms(project: Project, total: Step, about: str = "") -> Iterator[Term]:
     least = forces.moment_size(k)
     for at, vector, couple in zip(total.args[1::3], total.args[2::3], total.args[3::3], strict=True):
         if isinstance(vector, Step):
-            arm = forces.arm_about(total.args[0], at, vector)
-            force, length = abs(complex(vector.at(k))), float(arm.at(k))
+            force, length = abs(complex(vector.at(k))), float(forces.arm_about(total.args[0], at, vector).at(k))
             sign = letters.get(id(vector), symbol(vector.name)).replace(BAR, "")
             if np.isfinite(length) and not is_zero(force * length, least):  # a force of nothing has no arm
                 yield Term(f"{sign}·{arm_sign(sign)}{about}", 1.0 if length > 0 else -1.0, (force, abs(length)))
@@ -275,11 +257,8 @@ def _terms(project: Project, total: Step, about: str = "") -> Iterator[Term]:
 
 def _sum(terms: Sequence[Term]) -> str:
     """Terms with their signs, in letters."""
-    said = ""
-    for n, term in enumerate(terms):
-        sign = "−" if term.sign < 0 else "+"
-        said += (f" {sign} " if n else "−" if term.sign < 0 else "") + term.letters
-    return said
+    signs = (("−" if n == 0 else " − ") if term.sign < 0 else " + " if n else "" for n, term in enumerate(terms))
+    return "".join(sign + term.letters for sign, term in zip(signs, terms, strict=True))
 
 
 def _worked_out(terms: Sequence[Term], result: Quantity, of_sum: Callable[[Any, Any], Any] = lambda total, last: total,
