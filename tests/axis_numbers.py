@@ -19,7 +19,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.drawing import ink_index
 from tmm_sheets.drawing.ink import interrupted
 from tmm_sheets.drawing.marks import Box, Line, Text
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
 

@@ -26,7 +26,7 @@ import numpy as np
 from tests.labels import add_options, chosen
 from tmm_sheets import catalogue
 from tmm_sheets.box import Box
-from tmm_sheets.drawing import evenness
+from tmm_sheets.drawing import ink_index
 from tmm_sheets.drawing.marks import Arc, Drawing, Text
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.border_solver import CRANK, LETTERED, SHARE, VECTOR, Floor
@@ -82,11 +82,11 @@ class Sheet(NamedTuple):
 
 def gap(drawing: Drawing, step: float = 2.0) -> Box:
     """The largest rectangle without ink, mm."""
-    field = evenness.FIELD
+    field = ink_index.FIELD
     nx, ny = int(field.width / step), int(field.height / step)
     inked = np.zeros((ny, nx), bool)
-    ink = evenness.dense((m for m in drawing.marks if m.of != evenness.FRAME), 1.0)
-    z = np.concatenate((ink, *map(evenness.covering, evenness.TAKEN)))
+    ink = ink_index.dense((m for m in drawing.marks if m.of != ink_index.FRAME), 1.0)
+    z = np.concatenate((ink, *map(ink_index.covering, ink_index.TAKEN)))
     i, j = ((z.real - field.x0) / step).astype(int), ((z.imag - field.y0) / step).astype(int)
     there = (i >= 0) & (i < nx) & (j >= 0) & (j < ny)
     inked[j[there], i[there]] = True
@@ -145,9 +145,9 @@ def apart(sheet: Composed) -> Iterator[Apart]:
             window, circle = (next(m for m in span if isinstance(m, Arc)) for span in (own, spans[k + 1]))
             yield Apart(f"{part.draw} {part.title}", abs(window.centre - circle.centre))
         if own and own[-1].of in EQUATIONS:
-            at = Box.around(evenness.dense(own, 2.0)).centre
+            at = Box.around(ink_index.dense(own, 2.0)).centre
             views = [span for other, span in zip(parts, spans, strict=False) if other.draw in EQUATIONS[own[-1].of]]
-            inked = [evenness.dense((m for m in span if m.of not in EQUATIONS), 2.0) for span in views]
+            inked = [ink_index.dense((m for m in span if m.of not in EQUATIONS), 2.0) for span in views]
             yield Apart(own[-1].of, min((_off(at, Box.around(ink)) for ink in inked if len(ink)), default=inf))
 
 
@@ -174,8 +174,8 @@ def measured(name: str) -> list[Sheet | str]:
             found.append(f"{name} {n}: {type(e).__name__}: {e}")
             continue
         titles = {part.title for part in sheet.parts if part.draw == "kinematics.position_plans"}
-        found.append(Sheet(f"{name} {n}", kind, evenness.empty_cells(sheet.drawing), gap(sheet.drawing),
-                           [share for title, share in evenness.fills(sheet.drawing) if title in titles], [*sizes(project, sheet)],
+        found.append(Sheet(f"{name} {n}", kind, ink_index.empty_cells(sheet.drawing), gap(sheet.drawing),
+                           [share for title, share in ink_index.fills(sheet.drawing) if title in titles], [*sizes(project, sheet)],
                            [*apart(sheet)]))
     return found
 

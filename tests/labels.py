@@ -22,18 +22,18 @@ from typing import NamedTuple
 
 import numpy as np
 from shapely import GeometryCollection, LineString, Point, Polygon, box
-from shapely.ops import nearest_points
+from shapely.ops import nearest_points, substring
 
 from tests.gallery import names
 from tmm_sheets import catalogue
 from tmm_sheets import kept as stored
-from tmm_sheets.drawing import evenness, ink_index, lettering, owners
+from tmm_sheets.drawing import ink_index, lettering, owners
 from tmm_sheets.drawing import labels as placing
 from tmm_sheets.drawing.canvas import Label
 from tmm_sheets.drawing.ink import strokes
 from tmm_sheets.drawing.marks import Box, Fill, Line, Text
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.drawing.text_boxes import run_corners, text_box
+from tmm_sheets.drawing.text_layout import run_corners, text_box
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
 from tmm_sheets.words import LANGUAGES, set_paper
@@ -120,11 +120,11 @@ def inked(text):
 
 def strayed(drawing):
     """Runs of letters beyond the frame of the sheet, and those that touch others: what is lettered, where, and which of both."""
-    texts = [m for m in drawing.marks if isinstance(m, Text) and lettering.strokes(m.text, m.height) and m.of != evenness.FRAME]
+    texts = [m for m in drawing.marks if isinstance(m, Text) and lettering.strokes(m.text, m.height) and m.of != ink_index.FRAME]
     if not texts:
         return
     strokes_of = [inked(m) for m in texts]
-    field = evenness.FIELD
+    field = ink_index.FIELD
     cells = []
     for k, (text, lines) in enumerate(zip(texts, strokes_of, strict=True)):
         z = np.concatenate(lines)
@@ -216,7 +216,9 @@ def _of_another(p, ink):
     gap, way = own.distance(runs), LineString(nearest_points(runs, own))
     if any(whole.distance(runs) < gap - TIE for whole in apart):
         return NEARER
-    return BETWEEN if gap and any(part.crosses(way) for whole in apart for part in whole.geoms) else ""
+    # Heads of vectors that end at one point overlap: what is met as soon as its own ink is not between.
+    way = substring(way, 0.0, max(gap - TIE, 0.0))
+    return BETWEEN if any(part.crosses(way) for whole in apart for part in whole.geoms) else ""
 
 
 NEARER, BETWEEN, LED_ASTRAY, TOGETHER = (

@@ -66,14 +66,14 @@ def _asked(project: Project, drawings: Mapping[int, Drawing], askers: Askers) ->
 
 def _evenness(drawings: Mapping[int, Drawing]) -> Iterator[str]:
     """How evenly each sheet is filled: empty cells of 50 mm, and what its views use of their places."""
-    from tmm_sheets.drawing import evenness
+    from tmm_sheets.drawing import ink_index
 
     yield "{:5}{:>14}{:>12}   {}".format(tell("sheet"), tell("empty cells"), tell("mean fill"), tell("least filled views"))
     for n, drawing in drawings.items():
-        found = list(evenness.fills(drawing))
+        found = list(ink_index.fills(drawing))
         mean = sum(share for _, share in found) / max(len(found), 1)
         least = ", ".join(f"{name} {share:.0%}" for name, share in sorted(found, key=lambda view: view[1])[:3])
-        yield f"{n:5}{evenness.empty_cells(drawing):14.0%}{mean:12.0%}   {least}"
+        yield f"{n:5}{ink_index.empty_cells(drawing):14.0%}{mean:12.0%}   {least}"
 
 
 def _searches(project: Project) -> Iterator[str]:

@@ -10,7 +10,7 @@ from tmm_sheets.compare.photo.lost_ink import eats, lost_to_threshold, without_g
 from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.marks import Provenance as By
 from tmm_sheets.drawing.marks import Text
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 
 pytestmark = pytest.mark.judging
 

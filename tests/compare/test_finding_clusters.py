@@ -18,7 +18,7 @@ from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace
 from tmm_sheets.compare.photo.tracing import trace
 from tmm_sheets.drawing.marks import Provenance as By
 from tmm_sheets.drawing.marks import Text
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 
 PLAN, OTHER = (ElementView(n, name, Box(0, 0, 841, 594)) for n, name in enumerate(("plan", "other"), 1))
 AS_IT_IS = Map(0j, 1.0, np.array([[1.0, 0.0, 0.0], [0.0, -1.0, PAPER.y1], [0.0, 0.0, 1.0]]))

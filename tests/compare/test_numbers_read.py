@@ -12,7 +12,7 @@ from tmm_sheets.compare.photo import small_marks
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.traces import InkTrace
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.errors import BadInput
 
 VIEW = ElementView(1, "Table", Box(0, 0, 100, 100))

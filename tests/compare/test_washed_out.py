@@ -11,7 +11,7 @@ from tmm_sheets.compare.photo.lost_ink import mask_washed_out, taken, uneven_pla
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.marks import Text
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 
 pytestmark = pytest.mark.judging
 

@@ -7,7 +7,7 @@ from tmm_sheets.drawing import placing
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink_index import InkIndex, enters
 from tmm_sheets.drawing.marks import Box, Text
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.sheets.components import graphs
 
 PITCH = 12.0

@@ -5,7 +5,7 @@ import pytest
 
 from tests.evenness import gap
 from tmm_sheets.box import Box
-from tmm_sheets.drawing import evenness
+from tmm_sheets.drawing import ink_index
 from tmm_sheets.drawing.marks import Arc, Drawing, Line, View
 
 PLACE = Box(100.0, 100.0, 200.0, 200.0)
@@ -17,13 +17,13 @@ PLACE = Box(100.0, 100.0, 200.0, 200.0)
 ], ids=["whole", "half", "point", "beyond", "over a corner", "elsewhere"])  # fmt: skip
 def test_fill_of_a_place(a, b, share):
     drawing = Drawing(841.0, 594.0, "", (Line(a, b, "main"),), views=(View("view", PLACE, ((0, 1),)),))
-    assert dict(evenness.fills(drawing)) == {"view": pytest.approx(share)}
+    assert dict(ink_index.fills(drawing)) == {"view": pytest.approx(share)}
 
 
 def test_the_circle_of_a_detail_has_no_place_of_its_own():
     marks = Line(100 + 100j, 200 + 200j, "main"), Arc(150 + 150j, 2.0, 0.0, 6.28, "thin")
     drawing = Drawing(841.0, 594.0, "", marks, views=(View("plan", PLACE, ((0, 1),)), View("mark", PLACE, ((1, 2),))))
-    assert [name for name, _ in evenness.fills(drawing)] == ["plan"]
+    assert [name for name, _ in ink_index.fills(drawing)] == ["plan"]
 
 
 @pytest.mark.parametrize(("pitch", "high"), [(110.0, 110.0), (130.0, 130.0), (400.0, 345.0)])

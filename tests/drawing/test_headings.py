@@ -6,8 +6,7 @@ import pytest
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Text
-from tmm_sheets.drawing.text_boxes import text_box
-from tmm_sheets.drawing.text_layout import LEADING, heading
+from tmm_sheets.drawing.text_layout import LEADING, heading, text_box
 
 TEXT = "Кинематика выходного звена"
 WIDE = letter(TEXT, 5.0).width

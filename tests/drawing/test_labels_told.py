@@ -3,7 +3,7 @@
 import pytest
 
 from tests.labels import BEYOND, OVER, crossings, strayed
-from tmm_sheets.drawing.evenness import FIELD
+from tmm_sheets.drawing.ink_index import FIELD
 from tmm_sheets.drawing.marks import Drawing, Line, Provenance, Text
 
 WORD = Text(100 + 50j, "H", 5.0)

@@ -10,7 +10,7 @@ from tmm_sheets.drawing import ink_index, labels, owners
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.marks import Box, Line, Provenance, Text
 from tmm_sheets.drawing.placing import place
-from tmm_sheets.drawing.text_boxes import size, text_box
+from tmm_sheets.drawing.text_layout import size, text_box
 from tmm_sheets.project import Project
 
 A, B = Provenance("vector", "plan/a", "1", 0), Provenance("vector", "plan/b", "1", 0)
@@ -171,7 +171,7 @@ def test_a_leader_runs_over_no_lettering():
 ])  # fmt: skip
 def test_lettering_under_a_leader_is_seen_however_little(a, b, over):
     boxes = labels.np.array([(8.0, 19.9, 19.95, 30.0), (float("nan"),) * 4])
-    assert labels._count_crossed(boxes, a, b) == over
+    assert ink_index.enters(a, b - a, *boxes.T).sum() == over
 
 
 @pytest.mark.parametrize(("by", "moves"), [("construction", True), ("text", False)])
@@ -312,12 +312,45 @@ def test_a_leader_to_lines_that_are_nearly_one_ends_in_the_head_of_its_own(besid
     if beside > 1.0:  # far enough apart: it has its name beside it
         assert not here.unsure
         return
-    assert labels._needs_leader(at.label, at.box)
+    assert labels._leader(at.label, at.box) is not None
     assert here.unsure
     assert here.head is not None
     other, *_ = (m for m in canvas.marks if isinstance(m, Line) and m.by is not None and m.by.step == "plan/1")
     met = here.first_met(np.array([at.label.anchor]), np.array([at.box.nearest(at.label.anchor)]))
     assert ink_index.distance(np.array([other.a]), np.array([other.b]), met)[0] >= owners.UNSURE - 1e-9
+
+
+@pytest.mark.parametrize("angle", [8.0, 14.0, 40.0])
+@pytest.mark.parametrize("side", [1, -1])
+def test_the_proof_finds_names_exchanged_though_heads_at_one_point_overlap(angle, side):
+    """Two vectors end at one point, so that one's head may lie over the other's; each name stands at the other or at its own."""
+    turns = 0.0, np.radians(side * angle)
+    canvas = fan_of([(130 - 30 * np.exp(1j * turn) + 100j, 130 + 100j) for turn in turns])
+    ink, (wide, high) = ink_index.InkIndex(canvas.marks), size("F", 3.5)
+    for own, turn in enumerate(turns):
+        for at, outward in ((0, side), (1, -side)):
+            along = np.exp(1j * turns[at])
+            corner = 130 + 100j - 9 * along + outward * (2.5 + high / 2) * 1j * along - complex(wide, high) / 2
+            anchor = 130 + 100j - 9 * np.exp(1j * turn)
+            label = Label(anchor, "F", 3.5, of="", by=Provenance("text", f"plan/{own}", "1", 0))
+            box = Box(corner.real, corner.imag, corner.real + wide, corner.imag + high)
+            assert bool(trial._of_another(trial.Placed(label, box, []), ink)) is (at != own)
+
+
+@pytest.mark.parametrize(("ends", "alone"), [
+    ([(40, 0), (36, 0.05)], 0.95),          # beyond the end of one that runs along it
+    ([(40, 0), (40, 2)], 0.85),             # at the wide end of a fan, before the head of the other
+    ([(2, 0), (1.2, 3), (0.8, 3)], 0.5),    # between two at the ends of a short one
+])  # fmt: skip
+@pytest.mark.parametrize("turn", [1, 1j, -1])
+def test_a_name_may_stand_where_its_vector_is_most_alone(ends, alone, turn):
+    tails = [0, 0, 2]
+    canvas = fan_of([(100 + 100j + turn * tail, 100 + 100j + turn * complex(*end)) for tail, end in zip(tails, ends, strict=False)])
+    (x, y), by = ends[0], Provenance("text", "plan/0", "1", 0)
+    label = Label(100 + 100j + turn * complex(x, y) * (0.2 if alone > 0.5 else 0.35), "x", 3.5, by=by)
+    here = owners.Surroundings(ink_index.InkIndex(canvas.marks), label, 60.0)
+    assert here.unsure
+    assert ((here.places_along()[-1] - 100 - 100j) / turn / complex(x, y)).real == pytest.approx(alone, abs=0.02)
 
 
 @pytest.mark.parametrize("others", [0, 1, 2])

@@ -11,7 +11,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink import interrupted, strokes
 from tmm_sheets.drawing.marks import Arc, Drawing, Line, Polyline, Provenance, Text
 from tmm_sheets.drawing.placing import interrupt
-from tmm_sheets.drawing.text_boxes import CLEAR
+from tmm_sheets.drawing.text_layout import CLEAR
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 

@@ -18,7 +18,7 @@ from tmm_sheets.construction.step import Plan, value_of
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Fill, Text, flat
 from tmm_sheets.drawing.placing import place
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import composition, sheet
 from tmm_sheets.sheets.components import flat_crossings

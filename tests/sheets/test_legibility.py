@@ -8,7 +8,7 @@ from tests import project_files
 from tests.evenness import MOST
 from tmm_sheets import api
 from tmm_sheets.catalogue import read
-from tmm_sheets.drawing import evenness
+from tmm_sheets.drawing import ink_index
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.output.building import with_room
 from tmm_sheets.project import Project
@@ -47,7 +47,7 @@ def test_four_groups_call_for_a_sheet_of_their_own_and_can_be_read_there():
     sheet = composed(project, 2)
     assert not sheet.leaving
     assert not sheet.crowded
-    assert evenness.empty_cells(sheet.drawing) < MOST
+    assert ink_index.empty_cells(sheet.drawing) < MOST
     lefts = {view.box.x0 for view in arranged(project, 2).views if view.draw == "kinetics.group"}
     assert len(lefts) == 2
 

@@ -11,7 +11,7 @@ from tests.project_files import EVEN, MASS, MOMENT, SLIDER, read
 from tmm_sheets import summary
 from tmm_sheets.__main__ import run
 from tmm_sheets.drawing.marks import Arc, Text, flat
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant

@@ -106,9 +106,7 @@ def _paths(stroke: InkStroke, box: Box) -> Iterator[AggPath]:
     elif (points == points[0]).all():
         yield _path(np.append(points[:1], points[0] + 1e-4), False)  # a dot: Agg leaves out what has no length
     else:
-        x, y = points.real, points.imag
-        inside = x.min() >= box.x0 and x.max() <= box.x1 and y.min() >= box.y0 and y.max() <= box.y1
-        for part in (points,) if inside else polyline_inside(box, points):
+        for part in polyline_inside(box, points):
             yield _path(part, False)
 
 

@@ -29,7 +29,7 @@ from tmm_sheets.drawing.marks import (
     Role,
     Text,
 )
-from tmm_sheets.drawing.text_layout import LEADING, TOGETHER, heading
+from tmm_sheets.drawing.text_layout import LEADING, LEAST, TOGETHER, heading, needs, shared
 
 Align = Literal["left", "centre", "right"]
 SMALLEST = 2.5
@@ -42,8 +42,7 @@ LOOSE = 0.25
 """Extra distance of an index from its base in rotated lettering, mm."""
 
 
-@dataclass(frozen=True)
-class Label:
+class Label(NamedTuple):
     """Request for lettering near ``anchor``; a free position is searched when all views are drawn.
 
     ``away``: preferred direction from the anchor (0: any); ``gap``: clearance to it, mm. With ``leader`` it may as well stand
@@ -446,7 +445,7 @@ class Canvas:
     def table(self, corner: complex, widths: Sequence[float], rows: Sequence[Sequence[str]], row: float = 7.0,
               height: float = 3.5, header: int = 1) -> Box:
         """Table with its upper left corner at ``corner``, a main line under the first ``header`` rows; returns its box."""
-        widths, x0, y1 = _for_text(widths, rows), corner.real, corner.imag
+        widths, x0, y1 = shared(widths, needs(rows, SMALLEST, LEAST)) or widths, corner.real, corner.imag
         total, y0 = sum(widths), y1 - row * len(rows)
         for i in range(len(rows) + 1):
             y = y1 - i * row
@@ -490,16 +489,6 @@ class Canvas:
         """Record the marks from ``first`` on as the dimension of an angle."""
         a, middle, b = (vertex + rect(radius, turn) for turn in (start, (start + end) / 2, end))
         self.dimensions.append(Dimension("angle", first, len(self.marks), a, b, middle, markup, middle, vertex=vertex))
-
-
-def _for_text(widths: Sequence[float], rows: Sequence[Sequence[str]]) -> list[float]:
-    """Widths of columns, mm, redistributed so that all cells fit in the smallest letters, if their sum allows."""
-    least = [max(letter(cell, SMALLEST).width for cell in column) + 1.0 for column in zip(*rows, strict=True)]
-    short = sum(max(need - w, 0.0) for w, need in zip(widths, least, strict=True))
-    spare = sum(max(w - need, 0.0) for w, need in zip(widths, least, strict=True))
-    if not 0 < short <= spare:
-        return list(widths)
-    return [need if w < need else w - (w - need) * short / spare for w, need in zip(widths, least, strict=True)]
 
 
 @in_role("hatch")

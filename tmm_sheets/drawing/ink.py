@@ -16,12 +16,14 @@ from math import acos, ceil, inf, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from tmm_sheets.drawing import lettering
-from tmm_sheets.drawing.marks import Arc, Box, Fill, Line, Mark, Points, Polyline, Text
+from tmm_sheets.drawing.marks import Arc, Box, Fill, Line, Mark, Points, Polyline, Text, flat, run
 from tmm_sheets.drawing.styles import line_type
 
 SAGITTA = 0.005  # mm between an arc and its chords
+ROUNDING = 1e-6  # mm
 
 
 class InkStroke(NamedTuple):
@@ -79,11 +81,8 @@ def check(mark: Mark) -> None:
 
 
 def _points(mark: Line | Arc | Polyline, sagitta: float) -> Points:
-    if isinstance(mark, Line):
-        return np.array([mark.a, mark.b])
-    if isinstance(mark, Polyline):
-        points = np.asarray(mark.points)
-        return np.append(points, points[:1]) if mark.closed else points
+    if not isinstance(mark, Arc):
+        return flat(mark)
     step = 2 * acos(max(1 - sagitta / mark.radius, 0.0)) if mark.radius > 0 else 1.0
     n = max(ceil(abs(mark.end - mark.start) / step), 1)
     return np.asarray(mark.centre + mark.radius * np.exp(1j * np.linspace(mark.start, mark.end, n + 1)))
@@ -92,16 +91,14 @@ def _points(mark: Line | Arc | Polyline, sagitta: float) -> Points:
 def arcs_inside(box: Box, centre: complex, radius: float) -> list[tuple[float, float]]:
     """Arcs of a circle inside the box, (start, end) in rad counter-clockwise, at most one turn each."""
     cuts = set()
-    for x in (box.x0, box.x1):
-        d = x - centre.real
+    for edge, upright in ((box.x0, True), (box.x1, True), (box.y0, False), (box.y1, False)):
+        d = edge - (centre.real if upright else centre.imag)
         if abs(d) < radius:
             h = sqrt((radius - d) * (radius + d))
-            cuts |= {phase(complex(d, s * h)) % (2 * pi) for s in (1, -1) if box.y0 <= centre.imag + s * h <= box.y1}
-    for y in (box.y0, box.y1):
-        d = y - centre.imag
-        if abs(d) < radius:
-            h = sqrt((radius - d) * (radius + d))
-            cuts |= {phase(complex(s * h, d)) % (2 * pi) for s in (1, -1) if box.x0 <= centre.real + s * h <= box.x1}
+            for off in (complex(d, h), complex(d, -h)) if upright else (complex(h, d), complex(-h, d)):
+                along = centre + off
+                if box.y0 <= along.imag <= box.y1 if upright else box.x0 <= along.real <= box.x1:
+                    cuts.add(phase(off) % (2 * pi))
     if not cuts:
         return [(0.0, 2 * pi)] if box.contains(centre + radius) else []
     ends = sorted(cuts)
@@ -118,18 +115,13 @@ def chords(box: Box, centre: complex, radius: float, hollow: float = 0.0) -> lis
 
     Without what lies inside the concentric circle of radius ``hollow``.
     """
-    corners = complex(box.x0, box.y0), complex(box.x1, box.y0), complex(box.x1, box.y1), complex(box.x0, box.y1)
+    corners = box.corners.tolist()
     found = []
     for a, b in zip(corners, (*corners[1:], corners[0]), strict=True):
-        u = (b - a) / abs(b - a)
-        foot = a + ((centre - a) * u.conjugate()).real * u
-        inside, left_out = (r**2 - abs(centre - foot) ** 2 for r in (radius, hollow))
-        if inside <= 0:
-            continue
-        ends = foot - sqrt(inside) * u, foot + sqrt(inside) * u
-        free = [ends] if left_out <= 0 else [(ends[0], foot - sqrt(left_out) * u), (foot + sqrt(left_out) * u, ends[1])]
-        found += [part for one in free for part in (segment_inside(box, *one),) if part is not None]
-    return found
+        outer, inner = chord(centre, radius, a, b), chord(centre, hollow, a, b)
+        if outer is not None:
+            found += [outer] if inner is None else [(outer[0], inner[0]), (inner[1], outer[1])]
+    return [(a, b) for a, b in found if a != b]
 
 
 def segment_inside(box: Box, a: complex, b: complex) -> tuple[complex, complex] | None:
@@ -165,10 +157,12 @@ def chord(centre: complex, radius: float, a: complex, b: complex) -> tuple[compl
 
 
 def polyline_inside(box: Box, points: Points) -> list[Points]:
-    """Stretches of a polyline, complex (n,), inside the box."""
+    """Stretches of a polyline, complex (n,), inside the box; itself if it nowhere leaves it by more than rounding."""
     x, y = points.real, points.imag
     if not len(points) or x.max() < box.x0 or x.min() > box.x1 or y.max() < box.y0 or y.min() > box.y1:
         return []
+    if all(box.contains(corner, ROUNDING) for corner in (complex(x.min(), y.min()), complex(x.max(), y.max()))):
+        return [points]
     stretches: list[list[complex]] = []
     for a, b in pairwise(points.tolist()):
         part = segment_inside(box, a, b)
@@ -222,13 +216,11 @@ def cut(length: float, pattern: tuple[float, ...], closed: bool = False) -> list
     return pieces
 
 
-def _along(points: Points, pattern: tuple[float, ...], closed: bool) -> Iterator[Points]:
-    """Strokes of a polyline by arc length; corners within a stroke are kept."""
-    measure = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(points)))))
-    for a, b in cut(float(measure[-1]), pattern, closed):
-        inner = points[np.searchsorted(measure, a, "right") : np.searchsorted(measure, b, "left")]
-        ends = np.interp([a, b], measure, points.real) + 1j * np.interp([a, b], measure, points.imag)
-        yield np.concatenate((ends[:1], inner, ends[1:]))
+def _stretches(points: Points, reached: npt.NDArray[np.float64], parts: Iterable[tuple[float, float]]) -> Iterator[Points]:
+    """Parts (start, end) of a polyline by the length ``reached`` at each of its points, mm; corners within them are kept."""
+    for part in parts:
+        ends = np.interp(part, reached, points.real) + 1j * np.interp(part, reached, points.imag)
+        yield np.concatenate((ends[:1], points[(reached > part[0]) & (reached < part[1])], ends[1:]))
 
 
 def interrupted(mark: Mark) -> list[Mark]:
@@ -244,15 +236,10 @@ def interrupted(mark: Mark) -> list[Mark]:
     if isinstance(whole, Arc):
         turn = whole.end - whole.start
         return [whole._replace(start=whole.start + turn * a, end=whole.start + turn * b) for a, b in pieces]
-    points = np.append(whole.points, whole.points[:1]) if whole.closed else whole.points
-    run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(points)))))
-    out: list[Mark] = []
-    for a, b in pieces:
-        s = np.array([a, b]) * run[-1]
-        ends = np.interp(s, run, points.real) + 1j * np.interp(s, run, points.imag)
-        inner = points[(run > s[0]) & (run < s[1])]
-        out.append(whole._replace(points=np.concatenate((ends[:1], inner, ends[1:])), closed=False))
-    return out
+    points = flat(whole)
+    reached = run(points)
+    parts = [(a * reached[-1], b * reached[-1]) for a, b in pieces]
+    return [whole._replace(points=part, closed=False) for part in _stretches(points, reached, parts)]
 
 
 def strokes(marks: Iterable[Mark]) -> Iterator[Mark]:
@@ -270,6 +257,7 @@ def strokes(marks: Iterable[Mark]) -> Iterator[Mark]:
             for a, b in cut((mark.end - mark.start) * r, pattern, mark.end - mark.start > 2 * pi - 1e-9):
                 yield mark._replace(start=mark.start + a / r, end=mark.start + b / r)
         else:
-            points = np.append(mark.points, mark.points[:1]) if mark.closed else mark.points
-            for part in _along(points, pattern, mark.closed):
+            points = flat(mark)
+            reached = run(points)
+            for part in _stretches(points, reached, cut(float(reached[-1]), pattern, mark.closed)):
                 yield Polyline(part, mark.style, False, mark.of, mark.by)

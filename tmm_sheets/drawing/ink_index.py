@@ -1,9 +1,13 @@
-"""Spatial index of the ink of a sheet: what is near a point, in a rectangle or crossed by a line, and where there is room."""
+"""Spatial index of the ink of a sheet: what is near a point, in a rectangle or crossed by a line, and where there is room.
+
+Evenness of a finished sheet, too: share of empty squares, and how much of their boxes the views fill.
+"""
 
 from __future__ import annotations
 
 from cmath import rect
-from collections.abc import Callable, Collection, Iterable
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator
 from functools import cached_property
 from itertools import chain
 from typing import Any
@@ -11,9 +15,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.drawing.marks import Arc, Box, Fill, Line, Mark, Points, Polyline, Provenance, Text, flat
+from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Mark, Points, Polyline, Provenance, Role, Text, flat, run
 from tmm_sheets.drawing.styles import line_types
-from tmm_sheets.drawing.text_boxes import bounds_of, text_boxes
+from tmm_sheets.drawing.text_layout import bounds_of, text_box, text_boxes
 
 ROUNDING = 1e-6
 """Margin of a preselection, mm."""
@@ -53,8 +57,8 @@ class InkIndex:
         self.strong, self._heavy, self._parts = np.empty((3, 0), bool)
         self.half, self.sides = np.empty(0), np.empty((4, 0))
         self.written, self._corners, self.texts = np.empty((0, 4)), np.empty((0, 4), complex), list[int]()
-        self._filled, self._steps = np.empty((0, 4)), dict[tuple[str | int, ...], list[int]]()
-        self._made = dict[str, tuple[Cells, tuple[int, int, int]]]()
+        self._filled, self._steps = np.empty((0, 4)), defaultdict[tuple[str | int, ...], list[int]](list)
+        self._lines = dict[tuple[str | int, ...], dict[int, tuple[tuple[complex, complex], Role]]]()
         self.set_leaders(np.empty(0), np.empty(0))
         self.add(marks)
 
@@ -62,11 +66,12 @@ class InkIndex:
         """Add marks."""
         first, starts, ends, lines = len(self.marks), list[Any](), list[Any](), list[tuple[int, bool, bool, bool, float]]()
         texts, filled = dict[int, Text](), list[tuple[float, float, float, float]]()
+        before = len(self.a), len(self.written), len(self._filled)
         self.marks.extend(marks)
         for number, mark in enumerate(self.marks[first:], first):
             if mark.by is not None and mark.by.step and mark.by.role != "text":
-                for key in (mark.by[1:4], mark.by[1:]):
-                    self._steps.setdefault(key, []).append(number)
+                for key in (mark.by[1:4], mark.by[1:]) if mark.by.name else (mark.by[1:4],):
+                    self._steps[key].append(number)
             if isinstance(mark, Text):
                 texts[number] = mark
                 continue
@@ -90,7 +95,7 @@ class InkIndex:
             a, b = (np.fromiter(chain.from_iterable(of), complex) for of in (starts, ends))
             self.a, self.b, self.sides = np.append(self.a, a), np.append(self.b, b), np.hstack((self.sides, sides(a, b)))
             self.of, self.strong, self._heavy, self._parts, self.half = (
-                np.append(before, np.repeat(column, [*map(len, starts)])) for before, column in zip(
+                np.append(known, np.repeat(column, [*map(len, starts)])) for known, column in zip(
                     (self.of, self.strong, self._heavy, self._parts, self.half), zip(*lines, strict=True), strict=True))
         if texts:
             corners = text_boxes([*texts.values()])
@@ -99,6 +104,10 @@ class InkIndex:
         if filled:
             self._filled = np.vstack((self._filled, filled))
         vars(self).pop("_outlines", None)
+        self._lines.clear()
+        for name, make in (("heavy", self._heavy_cells), ("light", self._light_cells)):
+            if name in vars(self):
+                vars(self)[name].include(make(*before))
 
     def move_text(self, number: int, text: Text | None) -> None:
         """Move the lettering of a mark to where ``text`` stands, or remove it (None)."""
@@ -113,6 +122,15 @@ class InkIndex:
     def of_step(self, by: Provenance) -> list[int]:
         """Numbers of the marks with this step, position and frame, and with this name if any has it (an arm of a sum)."""
         return (by.name and self._steps.get(by[1:])) or self._steps.get(by[1:4], [])
+
+    def lines_of(self, by: Provenance) -> dict[int, tuple[tuple[complex, complex], Role]]:
+        """Lines that came from a step, by the numbers of their marks: tail and tip, and role of each."""
+        if (found := self._lines.get(by[1:])) is None:
+            marks = {n: self.marks[n] for n in self.of_step(by)}
+            tips = {m.by: complex(m.points[0]) for m in marks.values() if isinstance(m, Fill)}
+            found = {n: ((m.a, tips.get(m.by, m.b)), m.by.role) for n, m in marks.items() if isinstance(m, Line) and m.by}
+            self._lines[by[1:]] = found
+        return found
 
     def near(self, box: Box, reach: float) -> Numbers:
         """Numbers of the segments whose bounding boxes are within ``reach`` mm of a rectangle."""
@@ -178,31 +196,18 @@ class InkIndex:
         a, b = np.append(self.a, np.roll(self._corners, 1, axis=1)), np.append(self.b, self._corners)
         return a, b, sides(a, b), np.append(np.where(self.strong, WORSE, 1), np.full(self._corners.size, WORSE))
 
-    @property
+    @cached_property
     def heavy(self) -> Cells:
         """Cells that lettering must not touch: main lines, curves, axes, fills, other lettering, and their neighbours.
 
         Neighbours count as inked because main lines are up to a millimetre wide.
         """
-        return self._current(self._heavy_cells)
+        return self._heavy_cells()
 
-    @property
+    @cached_property
     def light(self) -> Cells:
         """Cells of thin lines, which lettering should avoid."""
-        return self._current(self._light_cells)
-
-    def _current(self, make: Callable[..., Cells]) -> Cells:
-        """Cached cells, updated with the ink added since they were made."""
-        counts = len(self.a), len(self.written), len(self._filled)
-        if (known := self._made.get(make.__name__)) is None:
-            cells = make()
-        elif known[1] == counts:
-            return known[0]
-        else:
-            cells = known[0]
-            cells.include(make(*known[1]))
-        self._made[make.__name__] = cells, counts
-        return cells
+        return self._light_cells()
 
     def _heavy_cells(self, lines: int = 0, texts: int = 0, fills: int = 0) -> Cells:
         """Forbidden cells of the segments, texts and fills from these numbers on."""
@@ -252,8 +257,7 @@ def _thin(points: Any) -> Any:
     """Thin a polyline of 50 points or more, complex (n,) mm, to one point per millimetre of arc length; both ends stay."""
     if len(points) < 50:
         return points
-    way = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(points)))))
-    keep = np.flatnonzero(np.diff(np.floor(way), prepend=-1.0))
+    keep = np.flatnonzero(np.diff(np.floor(run(points)), prepend=-1.0))
     return points[np.union1d(keep, [len(points) - 1])]
 
 
@@ -352,3 +356,64 @@ def sum_area(taken: npt.NDArray[np.bool_]) -> npt.NDArray[np.int32]:
     for i in range(1, len(table)):  # row upon row: three times quicker than another cumsum, which walks down columns
         table[i] += table[i - 1]
     return table
+
+
+FIELD = Box(20.0, 5.0, 836.0, 589.0)
+"""Inside of the frame of an A1 sheet, mm."""
+TAKEN = Box(651.0, 5.0, 836.0, 60.0), Box(20.0, 575.0, 90.0, 589.0)
+"""Title block and turned designation."""
+SQUARE = 50.0
+"""Approximate side of the squares of which the empty ones are counted, mm."""
+FRAME = "title block"
+
+
+def empty_cells(drawing: Drawing) -> float:
+    """Share of the squares of the field without ink, 0 .. 1."""
+    nx, ny = round(FIELD.width / SQUARE), round(FIELD.height / SQUARE)
+    inked = np.zeros((nx, ny), bool)
+    z = np.concatenate((dense((mark for mark in drawing.marks if mark.of != FRAME), 4.0), *map(covering, TAKEN)))
+    i = ((z.real - FIELD.x0) / FIELD.width * nx).astype(int)
+    j = ((z.imag - FIELD.y0) / FIELD.height * ny).astype(int)
+    there = (i >= 0) & (i < nx) & (j >= 0) & (j < ny)
+    inked[i[there], j[there]] = True
+    return float(1.0 - inked.mean())
+
+
+def fills(drawing: Drawing) -> Iterator[tuple[str, float]]:
+    """Name of each view and the share of its box that the bounding box of its ink takes, 0 .. 1.
+
+    Ink beyond the box, such as projection lines to another graph, does not count. The circle of an enlarged detail is not a view.
+    """
+    for view in {view.box: view for view in reversed(drawing.views)}.values():
+        marks = [mark for a, b in view.spans for mark in drawing.marks[a:b] if mark.of != FRAME]
+        z = [_outline(mark) for mark in marks]
+        if any(not isinstance(mark, Text) for mark in marks) and view.box.width * view.box.height > 0:
+            ink, place = Box.around(np.concatenate(z)), view.box
+            wide, high = min(ink.x1, place.x1) - max(ink.x0, place.x0), min(ink.y1, place.y1) - max(ink.y0, place.y0)
+            yield view.name, max(wide, 0.0) * max(high, 0.0) / (place.width * place.height)
+
+
+def _outline(mark: Mark) -> Points:
+    return text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)
+
+
+def dense(marks: Iterable[Mark], step: float) -> Points:
+    """Points along marks, or round their lettering, complex (n,), at most ``step`` mm apart."""
+    straight, texts, others = list[tuple[complex, complex]](), list[Text](), list[Points]()
+    for mark in marks:  # most are lines and lettering: quicker without an array for each
+        if isinstance(mark, Line):
+            straight.append((mark.a, mark.b))
+        elif isinstance(mark, Text):
+            texts.append(mark)
+        else:
+            others.append(flat(mark, 2.0))
+    a, b = np.array(straight, complex).reshape(-1, 2).T
+    corners = text_boxes(texts)
+    return sample(np.concatenate((a, corners[:, :-1].ravel(), *(z[:-1] for z in others))),
+                  np.concatenate((b, corners[:, 1:].ravel(), *(z[1:] for z in others))), step)
+
+
+def covering(box: Box) -> Points:
+    """Grid of points in a box, complex (n,), 4 mm apart: it counts as filled."""
+    x, y = np.meshgrid(np.arange(box.x0, box.x1, 4.0), np.arange(box.y0, box.y1, 4.0))
+    return np.asarray((x + 1j * y).ravel())

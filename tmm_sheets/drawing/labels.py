@@ -6,7 +6,7 @@ All candidate places of a label are judged at once on the cells of the :mod:`~tm
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from functools import cached_property
 from itertools import islice
 from math import pi
 from typing import NamedTuple
@@ -16,11 +16,10 @@ import numpy.typing as npt
 
 from tmm_sheets.drawing import ink_index, owners
 from tmm_sheets.drawing.canvas import Canvas, Label
-from tmm_sheets.drawing.crowded import Crowded
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
-from tmm_sheets.drawing.text_boxes import CLEAR, SHELF, size
+from tmm_sheets.drawing.text_layout import CLEAR, SHELF, Crowded, size
 
 TOGETHER = 64
 """So many labels have their places judged in one go."""
@@ -88,9 +87,9 @@ def set_labels(canvas: Canvas, ink: InkIndex) -> list[Crowded]:
     first = len(canvas.marks)
     placed = PlacedLabels(ink, canvas.labels, [part.box for part in canvas.parts])
     placed.place_all()
-    for around in (USUAL, USUAL, CLOSER, CLOSER):
-        for k in range(len(canvas.labels)):
-            placed.improve(k, around)
+    for around in (USUAL, CLOSER):
+        if placed.improve_all(around):  # what makes way may let others stand better
+            placed.improve_all(around)
     for label, box, *_ in placed.at:
         _draw(canvas, label, box)
     ink.add(canvas.marks[first:])
@@ -118,13 +117,14 @@ class PlacedLabels:
 
     def put(self, k: int, placement: Placement) -> None:
         """Label ``k`` is set."""
+        vars(self).pop("_disturbed", None)
         self.at[k:k + 1] = [placement]
         label, box, *_ = placement
         self.boxes[k] = box
-        before = self._led.pop(k, None)
-        if _needs_leader(label, box):
-            self._led[k] = _leader_ends(label, box)
-        if before is not None or k in self._led:
+        before, led = self._led.pop(k, None), _leader(label, box)
+        if led is not None:
+            self._led[k] = led
+        if before is not None or led is not None:
             self._update_leaders()
 
     def lift(self, k: int) -> None:
@@ -137,14 +137,17 @@ class PlacedLabels:
         self._whose = np.array(list(self._led), int)
         self._ends = np.array(list(self._led.values()), complex).reshape(-1, 2)
         self._led_sides = ink_index.sides(*self._ends.T)
-        self.leaders = ink_index.sample(self._ends[:, 0], self._ends[:, 1], ink_index.CELL / 2)
+        points = ink_index.sample(self._ends[:, 0], self._ends[:, 1], ink_index.CELL / 2)
+        self.leaders = np.array([points.real, points.imag, points.real, points.imag]).T
         self.ink.set_leaders(*self._ends.T)
 
-    def _is_undisturbed(self, k: int) -> bool:
-        """Whether label ``k`` has no leader, and none is near it: nothing can be wrong with it that was not before."""
-        if k in self._led or self.at[k].unsure:
-            return False
-        return not len(ink_index.find_near(self._led_sides, Box(*self.boxes[k]), NEAR + ink_index.ROUNDING))
+    @cached_property
+    def _disturbed(self) -> set[int]:
+        """Labels that have a leader, or one near them, or are unsure: nothing can be wrong with others that was not before."""
+        x0, y0, x1, y1 = self.boxes.T[:, :, None] + (NEAR + ink_index.ROUNDING) * np.array([-1, -1, 1, 1])[:, None, None]
+        e0, f0, e1, f1 = self._led_sides
+        near = ((e0 <= x1) & (e1 >= x0) & (f0 <= y1) & (f1 >= y0)).any(axis=1)
+        return {*near.nonzero()[0].tolist(), *self._led, *(k for k, at in enumerate(self.at) if at.unsure)}
 
     def count_faults(self, *some: int) -> int:
         """How many things are wrong with some labels where they stand; to be read as another thing's is worse than the others."""
@@ -158,20 +161,19 @@ class PlacedLabels:
         over = int(ink_index.enters(a, b - a, *self.boxes[k]).sum())
         if k not in self._led:
             return over
-        written = np.delete(self.written, len(self.written) - len(self.boxes) + k, axis=0)
         led = label, start, end = self.at[k].label, *self._led[k]
         if led not in self._unsure:
             here = _surroundings(self.ink, label)
             self._unsure[led] = int(here.count_unsure(here.first_met(np.array([start]), np.array([end])))[0])
-        met = int(owners.meet(a, b, *self._led[k]).sum()) + _count_crossed(written, *self._led[k])
-        return over + met + self._unsure[led]
+        written = ink_index.enters(start, end - start, *self.written.T)
+        written[len(written) - len(self.boxes) + k] = False
+        return over + int(owners.meet(a, b, start, end).sum() + written.sum()) + self._unsure[led]
 
     def _is_misread(self, k: int) -> bool:
         """Whether label ``k`` has no leader and is read as another's, because of one or where its vector is one with another."""
         label, box, _, unsure = self.at[k]
-        p, (x0, y0, x1, y1) = self.leaders, box.inset(-NEAR)
-        near = (p.real > x0) & (p.real < x1) & (p.imag > y0) & (p.imag < y1)
-        return k not in self._led and (unsure or (bool(near.any()) and bool(_surroundings(self.ink, label).misreading(box))))
+        return k not in self._led and (unsure or (len(ink_index.find_near(self.leaders.T, box, NEAR)) > 0
+                                                  and bool(_surroundings(self.ink, label).misreading(box))))
 
     def in_conflict(self, k: int) -> list[int]:
         """Labels whose leader or lettering the leader of label ``k`` meets, and those whose leader meets its lettering."""
@@ -219,27 +221,44 @@ class PlacedLabels:
         reach = abs(box.nearest(label.anchor) - label.anchor) + CLEAR
         return not self._led or not len(ink_index.find_near(self._led_sides, box, reach))
 
-    def improve(self, k: int, around: Around) -> None:
+    def improve_all(self, around: Around) -> bool:
+        """Give labels with which something is wrong better places, one after another; whether any has got one."""
+        return sum(self.improve(k, around) for k in range(len(self.at)) if k in self._disturbed) > 0
+
+    def improve(self, k: int, around: Around) -> bool:
         """Give label ``k`` a better place if something is wrong with it, and what it meets another one if need be."""
-        if self._is_undisturbed(k) or not self.count_faults(k):
-            return
+        if not self.count_faults(k):
+            return False
         # One that has no better place gets it when the one it meets makes room, or else all that stand where it had better be.
         ways = ((k,), *(pair for q in self.in_conflict(k) for pair in ((k, q), (q, k))))
-        if not any(self._set_again(some, around) for some in ways) and around is CLOSER and not self.set_alone(k):
-            any(self.make_room(*pair) for pair in ways[1:])
+        return any(self.set_again(some, around) for some in ways) or (
+            around is CLOSER and (self.set_alone(k) or any(self.make_room(*pair) for pair in ways[1:])))
 
     def _place_again(self, k: int, around: Around) -> None:
         (candidates,) = _candidates(self, [self.labels[k]], around)
         self.put(k, _place(self, self.labels[k], candidates, around))
 
-    def _set_again(self, some: tuple[int, ...], around: Around) -> bool:
-        """Take some labels off and set them again in this order; they stay where they were unless that makes it better."""
-        before, faults = [self.at[k] for k in some], self.count_faults(*some)
+    def set_again(self, some: tuple[int, ...], around: Around, first: Placement | None = None, well: bool = False) -> bool:
+        """Take some labels off and set them again in this order, the first one where it is told if it is.
+
+        They stay where they were unless that makes it better, or leaves nothing wrong (``well``).
+        """
+        before, faults = [self.at[k] for k in some], 1 if well else self.count_faults(*some)
         for k in some:
             self.lift(k)
         for k in some:
-            self._place_again(k, around)
-        return self._keep_if_better(some, before, faults)
+            if first is not None and k == some[0]:
+                self.put(k, first)
+            else:
+                self._place_again(k, around)
+        if self.count_faults(*some) < faults and all(self.at[k].free >= was.free for k, was in zip(some, before, strict=True)):
+            return True
+        self._put_back(some, before)
+        return False
+
+    def _put_back(self, some: Sequence[int], before: Sequence[Placement]) -> None:
+        for k, was in zip(some, before, strict=True):
+            self.put(k, was)
 
     def set_alone(self, k: int) -> bool:
         """Set label ``k`` where it would stand if there were no others, and those it meets there anew, if that makes it better."""
@@ -250,36 +269,18 @@ class PlacedLabels:
         near = ink_index.find_near(self.boxes.T, there.box, CLEAR).tolist()
         some = tuple(dict.fromkeys((k, *near, *self.in_conflict(k))))
         self.put(k, was)
-        before, faults = [self.at[n] for n in some], self.count_faults(*some)
-        for n in some:
-            self.lift(n)
-        self.put(k, there)
-        for n in some[1:]:
-            self._place_again(n, CLOSER)
-        return self._keep_if_better(some, before, faults)
+        return self.set_again(some, CLOSER, there)
 
     def make_room(self, k: int, q: int) -> bool:
         """Try some places of label ``k`` in turn until label ``q`` has a good one, too; else both stay where they were."""
         before, label = [self.at[k], self.at[q]], self.labels[k]
         for n in (k, q):
             self.lift(n)
-        places = _Places(self, label, *_candidates(self, [label], CLOSER))
-        for at in islice(places.well_apart(_surroundings(self.ink, label)), ROOMS):
-            self.put(k, Placement(label, places.box(at), True))
-            self._place_again(q, CLOSER)
-            if not self.count_faults(k, q):
-                return True
-            for n in (k, q):
-                self.lift(n)
-        return self._keep_if_better((k, q), before, 0)
-
-    def _keep_if_better(self, some: tuple[int, ...], before: list[Placement], faults: int) -> bool:
-        """Whether labels have fewer than so many ``faults`` now; else they go back to where they were before."""
-        if self.count_faults(*some) < faults and all(self.at[k].free >= was.free for k, was in zip(some, before, strict=True)):
-            return True
-        for k, was in zip(some, before, strict=True):
-            self.put(k, was)
-        return False
+        (candidates,) = _candidates(self, [label], CLOSER)
+        places = _Places(self, label, candidates)
+        rooms = [*islice(places.well_apart(_surroundings(self.ink, label)), ROOMS)]
+        self._put_back((k, q), before)
+        return any(self.set_again((k, q), CLOSER, Placement(label, places.box(at), True), well=True) for at in rooms)
 
 
 class _Candidates(NamedTuple):
@@ -298,6 +299,8 @@ class _Candidates(NamedTuple):
 
 def _candidates(placed: PlacedLabels, labels: Sequence[Label], around: Around = USUAL) -> list[_Candidates]:
     """Places about the anchors of some labels, judged together."""
+    if not labels:
+        return []
     away, directions = around
     turned = TURNING * np.abs(np.angle(directions)) / pi
     units = np.array([directions * (label.away / abs(label.away)) if label.away else directions for label in labels])
@@ -369,12 +372,9 @@ class _Places:
         if beyond is not None:
             more = more + OUTSIDE * (beyond[some] > 0)
             self._strayed = beyond > AWAY
-        p = placed.leaders
-        x0, y0, x1, y1 = around.inset(-CLEAR)
-        p = p[(p.real > x0) & (p.real < x1) & (p.imag > y0) & (p.imag < y1)]
-        if len(p):
-            x0, y0, x1, y1 = (there + _MARGIN)[:, :, None]
-            more += COVERING * ((p.real > x0) & (p.real < x1) & (p.imag > y0) & (p.imag < y1)).any(axis=1)
+        leaders = placed.leaders[ink_index.find_near(placed.leaders.T, around, CLEAR)]
+        if len(leaders):
+            more += COVERING * _overlap(there + _MARGIN, leaders)
         self.cost = np.full(len(cost), np.inf)
         self.cost[some] = more
         self.run_on = np.zeros(len(cost), bool)
@@ -382,13 +382,14 @@ class _Places:
         self.free = free[np.argsort(self.cost[free], kind="stable")]
         self.led = (np.abs(owners.nearest(label.anchor, self.sides) - label.anchor) > NEAR + label.gap) | bool(label.shelf)
 
-    def choose(self, here: owners.Surroundings, leaders: bool = True) -> tuple[int | None, float]:
+    def choose(self, here: owners.Surroundings, leaders: bool = True, least: float = np.inf) -> tuple[int | None, float]:
         """The cheapest free place where the label reads as what it names, or has a leader that meets nothing; cost of its fault.
 
         Where there is none the best of the others: a leader had better cross a line than the label be read as another thing's, or
-        the leader run over lettering. Without ``leaders`` none of those but such as are only vague.
+        the leader run over lettering. Without ``leaders`` none of those but such as are only vague; none with a fault that costs
+        ``least`` or more.
         """
-        best, least, worst, enough = None, np.inf, np.inf, np.inf
+        best, worst, enough = None, np.inf, np.inf
         if here.unsure and not leaders:
             return None, worst
         found = dict[int, float]()
@@ -426,7 +427,7 @@ class _Places:
             found[alone] += np.where(bad, MISREAD, VAGUE * vague)
         if len(led):
             if label.shelf:
-                p, q = np.array([_leader_ends(label, self.box(some[k])) for k in led.tolist()]).T
+                p, q = np.array([_leader(label, self.box(some[k])) for k in led.tolist()]).T
             else:
                 p, q = np.full(len(led), label.anchor), owners.nearest(label.anchor, sides[:, led])
             written = self._placed.written
@@ -463,10 +464,9 @@ def _overlap(sides: npt.NDArray[np.float64], boxes: npt.NDArray[np.float64]) -> 
 
 def _read_on(sides: npt.NDArray[np.float64], boxes: npt.NDArray[np.float64], gap: float) -> npt.NDArray[np.bool_]:
     """Which of them have one of the boxes on their level nearer than ``gap``."""
-    x0, y0, x1, y1 = sides[:, :, None]
-    b = boxes.T
+    x0, y0, x1, y1 = sides
     level = 0.4 * (y1 - y0)  # an index of the one beside the bar of the other is not yet a word
-    return np.asarray(((x0 - gap < b[2]) & (x1 + gap > b[0]) & (y0 + level < b[3]) & (y1 - level > b[1])).any(axis=1))
+    return _overlap(np.array([x0 - gap, y0 + level, x1 + gap, y1 - level]), boxes)
 
 
 def _draw(canvas: Canvas, label: Label, box: Box) -> None:
@@ -491,12 +491,13 @@ def _place(placed: PlacedLabels, label: Label, candidates: _Candidates, around: 
     vague, sure = 0 < fault <= VAGUE, not here.unsure
     cost = fault if k is None else float(places.cost[k]) + fault
     unread = k is None or fault > VAGUE
-    if unread or places.run_on[k] or vague or _needs_leader(*found[:2]):
-        for moved in (replace(label, anchor=anchor) for anchor in here.places_along()):
-            others = _Places(placed, moved, *_candidates(placed, [moved], around))
+    if unread or places.run_on[k] or vague or _leader(*found[:2]) is not None:
+        along = [label._replace(anchor=anchor) for anchor in here.places_along()]
+        for moved, tried in zip(along, _candidates(placed, along, around), strict=True):
+            others = _Places(placed, moved, tried)
             beside = _surroundings(placed.ink, moved)
             of_vector = beside.vector is not None  # so near to its end a leader would name the point
-            there, fault = others.choose(beside, leaders=unread and of_vector)
+            there, fault = others.choose(beside, unread and of_vector, cost)
             sure = sure or (of_vector and not beside.unsure)
             # Lettering that keeps off thin lines had better have a leader than stand over some.
             if there is not None and not others.run_on[there] and (
@@ -512,15 +513,14 @@ def _surroundings(ink: InkIndex, label: Label) -> owners.Surroundings:
     return owners.Surroundings(ink, label, 2 * (NEAR + label.gap) + size(label.text, label.height)[0])
 
 
-def _needs_leader(label: Label, box: Box) -> bool:
-    """Whether lettering there stands too far to be read without a leader."""
-    return bool(label.shelf) or abs(box.nearest(label.anchor) - label.anchor) > NEAR + label.gap
+def _leader(label: Label, box: Box) -> tuple[complex, complex] | None:
+    """From the anchor to the nearest point of lettering that stands too far to be read without a leader; None if it does not.
 
-
-def _leader_ends(label: Label, box: Box) -> tuple[complex, complex]:
-    """From the anchor to the nearest point of the lettering, or from the edge of what it names to its shelf."""
+    Or from the edge of what is named to its shelf.
+    """
     if not label.shelf:
-        return label.anchor, box.nearest(label.anchor)
+        end = box.nearest(label.anchor)
+        return (label.anchor, end) if abs(end - label.anchor) > NEAR + label.gap else None
     end = min(_shelf_ends(box), key=lambda z: abs(z - label.anchor))
     return label.anchor + label.shelf * (end - label.anchor) / abs(end - label.anchor), end
 
@@ -530,19 +530,15 @@ def _shelf_ends(box: Box) -> tuple[complex, complex]:
     return complex(box.x0, box.y0), complex(box.x1, box.y0)
 
 
-def _count_crossed(boxes: npt.NDArray[np.float64], a: complex, b: complex) -> int:
-    """Over how much lettering a leader runs."""
-    x0, y0, x1, y1 = boxes[(boxes[:, 2] > min(a.real, b.real)) & (boxes[:, 0] < max(a.real, b.real))].T
-    return int(ink_index.enters(a, b - a, x0, y0, x1, y1).sum())
-
-
 def _draw_leader(canvas: Canvas, label: Label, box: Box) -> None:
-    """Thin line from the anchor to the nearest point of lettering that stands too far to be read without one."""
+    """Thin line to lettering that needs a leader, and the shelf under it."""
+    if (led := _leader(label, box)) is None:
+        return
+    start, end = led
     if label.shelf:
-        canvas.line(*_leader_ends(label, box), "thin")
+        canvas.line(start, end, "thin")
         canvas.line(*_shelf_ends(box), "thin")
-    elif _needs_leader(label, box):
-        _, end = _leader_ends(label, box)
-        u = (end - label.anchor) / abs(end - label.anchor)
+    else:
+        u = (end - start) / abs(end - start)
         # A label that keeps off its anchor stands beside a symbol: the line ends at that symbol's edge, not inside it.
-        canvas.line(label.anchor + max(label.gap - BESIDE, 0.0) * u, end - 0.6 * u, "thin")
+        canvas.line(start + max(label.gap - BESIDE, 0.0) * u, end - 0.6 * u, "thin")

@@ -165,13 +165,12 @@ def index_size(height: float) -> float:
     return 0.7 * height
 
 
-def fitted(markup: str, room: float, height: float, least: float = 2.5) -> Lettering:
+def fitted(markup: str, room: float, height: float) -> Lettering:
     """Lay out markup at the largest standard height up to ``height`` with which it is no wider than ``room``, mm.
 
-    Not below ``least`` mm, which is used even if too wide: smaller letters are not legible.
+    Not below 2.5 mm, which is used even if too wide: smaller letters are not legible.
     """
-    sizes = [size for size in SIZES if least <= size <= height] or [height]
-    return next((laid for size in reversed(sizes) if (laid := letter(markup, size)).width <= room), letter(markup, sizes[0]))
+    return letter(markup, size_for([markup], room, height))
 
 
 class _Setter:
@@ -266,13 +265,13 @@ class _Setter:
 
 
 @lru_cache(maxsize=8192)
-def _extents(text: str) -> tuple[float, float, float]:
-    """Right, upper and lower edge of the ink of a run 1 mm high, mm from the left end of its baseline."""
+def extents(text: str) -> tuple[float, float, float, float]:
+    """Left, lower, right and upper edge of the ink of a run 1 mm high, mm from the left of its baseline; none: inf .. -inf."""
     glyphs = [glyph(char) for char in text]
     origins = accumulate([g.advance for g in glyphs], initial=0.0)
-    inked = [(x + g.right, g.top, g.bottom) for x, g in zip(origins, glyphs, strict=False) if g.strokes]
-    rights, tops, bottoms = zip(*(inked or [(-inf, -inf, inf)]), strict=True)
-    return max(rights), max(tops), min(bottoms)
+    inked = [(x + g.left, g.bottom, x + g.right, g.top) for x, g in zip(origins, glyphs, strict=False) if g.strokes]
+    lefts, bottoms, rights, tops = zip(*(inked or [(inf, inf, -inf, -inf)]), strict=True)
+    return min(lefts), min(bottoms), max(rights), max(tops)
 
 
 @lru_cache(maxsize=8192)
@@ -288,7 +287,7 @@ def letter(markup: str, height: float) -> Lettering:
     setter.set(markup, 0j, float(height))  # 5 and 5.0 share one place in the cache, and the record tells the height
     right = top = bottom = 0.0
     for at, text, size in setter.runs:
-        width, above, below = _extents(text)
+        _, below, width, above = extents(text)
         right, top = max(right, at.real + size * width), max(top, at.imag + size * above)
         bottom = min(bottom, at.imag + size * below)
     for bar in setter.bars:

@@ -213,6 +213,11 @@ def flat(mark: Mark, step: float = 0.5) -> Points:
     return np.concatenate((points, points[:1])) if closed else points
 
 
+def run(points: Points) -> npt.NDArray[np.float64]:
+    """Length of a polyline, complex (n,), from its beginning to each of its points, mm."""
+    return np.concatenate(([0.0], np.cumsum(np.abs(np.diff(points)))))
+
+
 def bounds(marks: Iterable[Mark]) -> Box:
     """Bounding box of the lines of the marks; texts count with their start only."""
     points = np.concatenate([flat(m) for m in marks])

@@ -7,6 +7,7 @@ nearer than any other, and the shortest way there must cross none. Where there i
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from math import inf
 from typing import Any, NamedTuple
 
@@ -14,8 +15,8 @@ import numpy as np
 
 from tmm_sheets.drawing.canvas import Label
 from tmm_sheets.drawing.ink_index import LEADER, ROUNDING, Flags, Floats, InkIndex, Numbers, crosses, distance, enters, sides
-from tmm_sheets.drawing.marks import Box, Fill, Line, Points, Provenance, flat
-from tmm_sheets.drawing.text_boxes import run_corners
+from tmm_sheets.drawing.marks import Box, Fill, Points, flat
+from tmm_sheets.drawing.text_layout import run_corners
 
 AT = 0.3
 """Lines that pass this near the anchor meet there: a letter at a point is nearer to all of them than to any other, mm."""
@@ -39,10 +40,16 @@ UNSURE = 0.7
 """A leader that ends so near to a foreign strong line, mm, may be its."""
 SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88, 0.05, 0.95)
 """Places along a vector where its letter may stand."""
+FINE = 91
+"""So many places are tried for the one where a vector is most alone."""
 ALONG = 3.0
 """Lines that part within so many mm are seen to be two."""
 IN_HEAD = 0.8
 """Part of an arrow head's length, from its tip, at which a leader ends in it: of lines close together it is the widest."""
+
+
+_Subject = tuple[list[int], tuple[complex, complex] | None]
+"""What a label names: numbers of marks, and the ends of its vector if it stands beside one."""
 
 
 class Surroundings:
@@ -50,19 +57,13 @@ class Surroundings:
 
     def __init__(self, ink: InkIndex, label: Label, reach: float) -> None:
         p = label.anchor
-        self.anchor = p
+        self.anchor, self._ink, self._label = p, ink, label
         self.a, self.b, self.of, self.strong = ink.parting(p, reach)
         self.sides = sides(self.a, self.b)
         self.leaders = self.of == LEADER
-        named = _named(ink, label)
-        self.vector = _vector(ink, label, named)
-        self.own, self.twin = _own(ink, self, label, named), np.zeros(len(self.of), bool)
-        if self.vector is not None:
-            self._runs = _runs(label)
-            # What lies on the vector is named together with it.
-            along = np.maximum(_to_line(self.a, *self.vector), _to_line(self.b, *self.vector)) <= AT
-            self.twin = _are_others(ink, self.of, along & ~self.own)
-            self.own |= along
+        subject = _subject(ink, label)
+        named, self.vector = subject
+        self.own, self.twin = _belongings(ink, [label], [subject], np.zeros(len(self.of), int), self.a, self.b, self.of)
         self.unsure = 0 if self.vector is None else int(self.count_unsure(np.array([p]))[0])
         heads = [mark for n in named if isinstance(mark := ink.marks[n], Fill)] if self.unsure else []
         self._heads = [mark.points for mark in heads if mark.by and mark.by.role == "vector"]
@@ -77,7 +78,8 @@ class Surroundings:
     def judge(self, boxes: Floats) -> tuple[Flags, Floats]:
         """Where lettering in rectangles, shape (4, m), is read as another line's, and how vague it is."""
         m = boxes.shape[1]
-        bad, vague = self._pairs(boxes).judge(boxes, np.full(m, self.anchor), [None if self.vector is None else self._runs] * m)
+        runs = None if self.vector is None else _runs(self._label.text, self._label.height)
+        bad, vague = self._pairs(boxes).judge(boxes, np.full(m, self.anchor), [runs] * m)
         return bad, vague + SPOT * self.unsure
 
     def _pairs(self, boxes: Floats) -> Pairs:
@@ -103,7 +105,7 @@ class Surroundings:
         a, b, start, end = self.a[near], self.b[near], starts[which], ends[which]
         along, d = end - start, b - a
         parallel = np.abs((d * np.conj(along)).imag) < PARALLEL * np.abs(d) * np.abs(along)
-        apart = np.minimum(_to_line(a, start, end), _to_line(b, start, end))
+        apart = np.minimum(distance(start, end, a), distance(start, end, b))
         beside = np.minimum(apart, np.minimum(distance(a, b, start + 0.5 * along), distance(a, b, end)))
         leader, foreign = self.leaders[near], ~self.own[near]
         crossed = foreign & (self.strong[near] & crosses(a, b, start, end) | leader & meet(a, b, start, end))
@@ -121,8 +123,12 @@ class Surroundings:
 
     def count_unsure(self, starts: Points) -> Numbers:
         """How many foreign strong lines, or other vectors on its line, a leader from each point, shape (m,), might name as well."""
+        return np.asarray((self._apart(starts) < UNSURE).sum(axis=1))
+
+    def _apart(self, points: Any) -> Floats:
+        """Distances of points, shape (m,), to foreign strong lines and other vectors on the label's line, mm, shape (m, n)."""
         others = self.strong & ~self.own | self.twin
-        return np.asarray((distance(self.a[others], self.b[others], starts[:, None]) < UNSURE).sum(axis=1))
+        return distance(self.a[others], self.b[others], points[:, None])
 
     def runs_together(self) -> bool:
         """Whether another line is one with the vector for a while where its name stands."""
@@ -130,8 +136,7 @@ class Surroundings:
             return False
         a, b = self.vector
         beside = self.anchor + ALONG * np.array([-1.0, 0.0, 1.0]) * (b - a) / abs(b - a)
-        others = self.strong & ~self.own | self.twin
-        return bool((distance(self.a[others], self.b[others], beside[:, None]).max(axis=0) <= HARDLY).any())
+        return bool((self._apart(beside).max(axis=0) <= HARDLY).any())
 
     def places_along(self) -> list[complex]:
         """Other places on the vector that the label names, the nearer the middle the sooner; none where it names no vector."""
@@ -139,7 +144,14 @@ class Surroundings:
             return []
         a, b = self.vector
         within = [complex(z[0] + IN_HEAD * (z[1:].mean() - z[0])) for z in self._heads]
-        return [z for z in (*(a + share * (b - a) for share in SHARES), *within) if abs(z - self.anchor) > SYMBOL]
+        places = [z for z in (*(a + share * (b - a) for share in SHARES), *within) if abs(z - self.anchor) > SYMBOL]
+        return [*places, self._most_alone(a, b)] if self._heads else places
+
+    def _most_alone(self, a: complex, b: complex) -> complex:
+        """Where other lines are farthest from the vector: at the wide end of a fan, or beyond the end of one that runs along it."""
+        along = a + np.linspace(min(SHARES), max(SHARES), FINE) * (b - a)
+        far = Surroundings(self._ink, self._label, abs(b - a))
+        return complex(along[np.argmax(far._apart(along).min(axis=1))])
 
 
 def meet(a: Points, b: Points, start: Any, end: Any) -> Flags:
@@ -244,41 +256,59 @@ def read_well(ink: InkIndex, labels: Sequence[Label], boxes: Floats) -> Flags:
     p = np.array([label.anchor for label in labels])
     x0, y0, x1, y1 = boxes
     way = np.abs(nearest(p, boxes) - p)
-    named = [_named(ink, label) for label in labels]
-    vectors = [_vector(ink, label, own) for label, own in zip(labels, named, strict=True)]
-    reach = np.maximum(way + 2 * AT + ROUNDING, [0.0 if v is None else SEEN for v in vectors])
+    subjects = [_subject(ink, label) for label in labels]
+    reach = np.maximum(way + 2 * AT + ROUNDING, [0.0 if vector is None else SEEN for _, vector in subjects])
     e0, f0, e1, f1 = ink.sides
     which, near = (ink.parts & (e0 <= (x1 + reach)[:, None]) & (e1 >= (x0 - reach)[:, None]) & (f0 <= (y1 + reach)[:, None])
                    & (f1 >= (y0 - reach)[:, None])).nonzero()
-    a, b, of, at = ink.a[near], ink.b[near], ink.of[near], p[which]
-    steps = [k * len(ink.marks) + number for k, own in enumerate(named) for number in own]
-    found = np.isin(which * len(ink.marks) + of, steps)
-    apart = distance(a, b, at)
-    # Whether the anchor is where one of these lines ends, or on none of them.
-    alone = np.bincount(which[found], minlength=len(labels)) > 0
-    on = np.zeros(len(labels), bool)
-    for k, number in dict.fromkeys(zip(*(v[found & (apart <= 2 * AT)].tolist() for v in (which, of)), strict=True)):
-        on[k] = True
-        alone[k] &= np.abs(flat(ink.marks[number])[[0, -1]] - labels[k].anchor).min() > 2 * AT
-    alone = alone & on | [v is not None for v in vectors]
-    gaps = np.array([label.gap + SYMBOL for label in labels])[which]
-    twin = np.zeros(len(which), bool)
-    own = found | ~alone[which] & ((np.maximum(np.abs(a - at), np.abs(b - at)) <= gaps) | (apart <= AT))
-    runs = [None if v is None else _runs(label) for v, label in zip(vectors, labels, strict=True)]
-    if any(v is not None for v in vectors):
-        ends = np.array([v or (inf, inf) for v in vectors])
-        of_vector = np.array([v is not None for v in vectors])[which].nonzero()[0]
-        u, v = ends[which[of_vector]].T
-        along = np.maximum(_to_line(a[of_vector], u, v), _to_line(b[of_vector], u, v)) <= AT
-        twin[of_vector] = _are_others(ink, of[of_vector], along & ~own[of_vector])
-        own[of_vector] |= along
+    a, b, of = ink.a[near], ink.b[near], ink.of[near]
+    own, twin = _belongings(ink, labels, subjects, which, a, b, of)
+    runs = [vector and _runs(label.text, label.height) for (_, vector), label in zip(subjects, labels, strict=True)]
     pairs = Pairs(which, a, b, of, own, twin, ink.strong[near])
     misread, vague = pairs.judge(boxes, p, runs)
     return np.asarray(~misread & (vague == 0))
 
 
-def _runs(label: Label) -> Floats:
-    return np.array([Box.around(run) for run in run_corners(label.text, label.height)]).T
+@lru_cache(maxsize=8192)
+def _runs(text: str, height: float) -> Floats:
+    return np.array([Box.around(run) for run in run_corners(text, height)]).T
+
+
+def _subject(ink: InkIndex, label: Label) -> _Subject:
+    named = _named(ink, label)
+    return named, _vector(ink, label, named)
+
+
+def _belongings(ink: InkIndex, labels: Sequence[Label], subjects: Sequence[_Subject], which: Numbers, a: Points, b: Points,
+                of: Numbers) -> tuple[Flags, Flags]:
+    """Which segments, near the labels numbered ``which``, these may stand for; and which of them are other vectors on their line.
+
+    A label stands for the step it names and for what meets or lies about its anchor; but the letter of a vector or a curve stands
+    beside it: there lines that only pass by the anchor are foreign. What lies on a vector is named together with it.
+    """
+    at = np.array([label.anchor for label in labels])[which]
+    steps = np.zeros((len(labels), len(ink.marks) + 1), bool)  # the last is that of leaders
+    for k, (named, _) in enumerate(subjects):
+        steps[k, named] = True
+    found, apart = steps[which, of], distance(a, b, at)
+    alone, on = np.bincount(which[found], minlength=len(labels)) > 0, np.zeros(len(labels), bool)
+    for k, number in dict.fromkeys(zip(*(v[found & (apart <= 2 * AT)].tolist() for v in (which, of)), strict=True)):
+        on[k] = True
+        alone[k] &= np.abs(flat(ink.marks[number])[[0, -1]] - labels[k].anchor).min() > 2 * AT
+    of_vector = np.array([vector is not None for _, vector in subjects])
+    alone = alone & on | of_vector
+    gaps = np.array([label.gap + SYMBOL for label in labels])[which]
+    # The leader of another label names nothing by itself, even if it comes from the same point.
+    own = found | ~alone[which] & (of != LEADER) & ((np.maximum(np.abs(a - at), np.abs(b - at)) <= gaps) | (apart <= AT))
+    twin = np.zeros(len(which), bool)
+    if of_vector.any():
+        beside = of_vector[which].nonzero()[0]
+        u, v = np.array([vector or (inf, inf) for _, vector in subjects])[which[beside]].T
+        along = np.maximum(distance(u, v, a[beside]), distance(u, v, b[beside])) <= AT
+        for k in beside[along & ~own[beside]].tolist():
+            twin[k] = of[k] != LEADER and (by := ink.marks[of[k]].by) is not None and by.role == "vector"
+        own[beside] |= along
+    return own, twin
 
 
 def nearest(p: Any, boxes: Floats) -> Points:
@@ -294,7 +324,8 @@ def _named(ink: InkIndex, label: Label) -> list[int]:
     """
     if label.by is None or not label.by.step:
         return []
-    found, vectors = ink.of_step(label.by), _lines_of(ink, label.by, {"vector"})
+    found = ink.of_step(label.by)
+    vectors = {n: ends for n, (ends, role) in ink.lines_of(label.by).items() if role == "vector"}
     apart = {n: _apart(*ends, label.anchor) for n, ends in vectors.items()}
     least = min(apart.values(), default=inf)
     foreign = {n for n in apart if apart[n] > least + 1e-3}
@@ -308,16 +339,10 @@ def _vector(ink: InkIndex, label: Label, named: Sequence[int]) -> tuple[complex,
     """Ends of the vector, or of the construction line or line of a detail named by its own letter, beside which a label stands."""
     if label.by is None:
         return None
-    lines = _lines_of(ink, label.by, {"vector"} | {"construction", "symbol"} & {label.by.role}) if named else {}
-    return next((ends for n, ends in lines.items() if n in named and _apart(*ends, label.anchor) <= 2 * AT
-                 and min(abs(z - label.anchor) for z in ends) > 2 * AT), None)
-
-
-def _lines_of(ink: InkIndex, by: Provenance, roles: set[str]) -> dict[int, tuple[complex, complex]]:
-    """Lines of these roles that came from a step, by the numbers of their marks: tail and tip of each."""
-    marks = {n: ink.marks[n] for n in ink.of_step(by)}
-    tips = {m.by: complex(m.points[0]) for m in marks.values() if isinstance(m, Fill)}
-    return {n: (m.a, tips.get(m.by, m.b)) for n, m in marks.items() if isinstance(m, Line) and m.by and m.by.role in roles}
+    roles = {"vector"} | {"construction", "symbol"} & {label.by.role}
+    lines = ink.lines_of(label.by) if named else {}
+    return next((ends for n, (ends, role) in lines.items() if role in roles and n in named
+                 and _apart(*ends, label.anchor) <= 2 * AT and min(abs(z - label.anchor) for z in ends) > 2 * AT), None)
 
 
 def _apart(a: complex, b: complex, p: complex) -> float:
@@ -326,44 +351,10 @@ def _apart(a: complex, b: complex, p: complex) -> float:
     return abs(a + (0.0 if t < 0.0 else 1.0 if t > 1.0 else t) * (b - a) - p)
 
 
-def _own(ink: InkIndex, here: Surroundings, label: Label, named: Sequence[int]) -> Flags:
-    """Which segments a label may stand for: those of the step it names, and what meets or lies about its anchor.
-
-    The letter of a vector or a curve stands beside it: there lines that only pass by the anchor are foreign.
-    """
-    found = np.isin(here.of, named)
-    if here.vector is not None or (found.any() and not _at_end(ink, here, found, label.anchor)):
-        return found
-    about = np.maximum(np.abs(here.a - label.anchor), np.abs(here.b - label.anchor)) <= label.gap + SYMBOL
-    # The leader of another label names nothing by itself, even if it comes from the same point.
-    return np.asarray((found | about | (distance(here.a, here.b, label.anchor) <= AT)) & (here.of != LEADER))
-
-
-def _at_end(ink: InkIndex, here: Surroundings, lines: Flags, anchor: complex) -> bool:
-    """Whether the anchor is where one of these lines ends, or on none of them."""
-    on = lines & (distance(here.a, here.b, anchor) <= 2 * AT)
-    ends = [flat(ink.marks[number])[[0, -1]] for number in np.unique(here.of[on])]
-    return not ends or bool(np.abs(np.array(ends) - anchor).min() <= 2 * AT)
-
-
-def _are_others(ink: InkIndex, of: Numbers, along: Flags) -> Flags:
-    """Which segments of those that lie ``along`` a vector are other vectors."""
-    found = np.zeros(len(of), bool)
-    for k in along.nonzero()[0].tolist():
-        found[k] = of[k] != LEADER and (by := ink.marks[of[k]].by) is not None and by.role == "vector"
-    return found
-
-
 def _is_inside(p: complex, corners: Points) -> bool:
     """Whether a point lies inside a convex polygon, or on its edge."""
     sides_ = ((corners - p) * np.conj(np.roll(corners, -1) - p)).imag
     return bool((sides_ >= -EVEN).all() or (sides_ <= EVEN).all())
-
-
-def _to_line(p: Any, a: Any, b: Any) -> Floats:
-    """Distances of points to one segment, or each to its own."""
-    t = np.minimum(np.maximum(((p - a) * np.conj(b - a)).real / np.abs(b - a) ** 2, 0.0), 1.0)
-    return np.asarray(np.abs(a + t * (b - a) - p))
 
 
 def _to_box(a: Any, b: Any, box: Iterable[Any]) -> tuple[Floats, Any, Any]:

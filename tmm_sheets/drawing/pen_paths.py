@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.drawing.ink import ink, polyline_inside
+from tmm_sheets.drawing.ink import ROUNDING, ink, polyline_inside
 from tmm_sheets.drawing.marks import Box, Drawing, Points
 from tmm_sheets.drawing.plotters import NEAR, Pen, Plotter
 
@@ -219,17 +219,18 @@ def _pen_lines(drawing: Drawing, plotter: Plotter, view: Box, shift: complex) ->
     lost, strokes = 0.0, 0
     for stroke in ink(drawing.marks):
         points = stroke.points + shift
-        if not _touches(reach, points):  # in a window: another will have it
+        x0, y0, x1, y1 = bounds = Box.around(points)
+        if x0 > reach.x1 or y0 > reach.y1 or x1 < reach.x0 or y1 < reach.y0:  # in a window: another will have it
             lost += 0.0 if stroke.filled else _length(points)
             continue
         strokes += 1
         if stroke.filled and not plotter.pens:
-            if _inside(reach, points):
+            if all(map(reach.inset(-ROUNDING).contains, bounds.corners)):
                 areas[Pen(1, 0.2)].append(_steps(points))
             continue
         pen = plotter.finest if stroke.filled else plotter.pen(stroke.width)
         for way in fill_passes(points, pen.width) if stroke.filled else line_passes(points, stroke.width, pen.width):
-            parts = [way] if _inside(reach, way) else polyline_inside(reach, way)
+            parts = polyline_inside(reach, way)
             lost += _length(way) - sum(map(_length, parts))
             lines[pen] += [_steps(part) for part in parts]
     return lines, areas, strokes, lost
@@ -346,21 +347,14 @@ def ordered(paths: list[Path], start: Step = (0, 0)) -> list[Path]:
 
 def _nearest_next(starts: Points, ends: Points, place: complex) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
     """Greedy order of paths, indices (n,), each with an end nearest to where the last stopped; (n,) True where reversed."""
-    n = len(starts)
-    both = np.concatenate((starts, ends))
-    index = np.arange(2 * n)
-    alive, turned, order = np.ones(n, dtype=bool), np.zeros(n, dtype=bool), np.zeros(n, dtype=np.int64)
+    n, both = len(starts), np.concatenate((starts, ends))
+    turned, order = np.zeros(n, dtype=bool), np.zeros(n, dtype=np.int64)
     for done in range(n):
-        if done % 256 == 0:
-            keep = alive[index % n]
-            index, both = index[keep], both[keep]
-        distance = np.abs(both - place)
-        distance[~alive[index % n]] = np.inf
-        j = int(index[np.argmin(distance)])
-        order[done] = j % n
-        turned[j % n] = j >= n
-        alive[j % n] = False
-        place = complex(starts[j % n] if j >= n else ends[j % n])
+        j = int(np.argmin(np.abs(both - place)))
+        k = j % n
+        order[done], turned[k] = k, j >= n
+        place = complex(starts[k] if turned[k] else ends[k])
+        both[[k, k + n]] = np.inf
     return order, turned
 
 
@@ -369,17 +363,6 @@ def _steps(points: Points) -> Path:
     x, y = (np.rint(v / STEP).astype(int).tolist() for v in (points.real, points.imag))
     steps = list(zip(x, y, strict=True))
     return (steps[0], *(b for a, b in pairwise(steps) if a != b))
-
-
-def _inside(box: Box, points: Points) -> bool:
-    low, high = complex(box.x0 - 1e-6, box.y0 - 1e-6), complex(box.x1 + 1e-6, box.y1 + 1e-6)
-    x, y = points.real, points.imag
-    return bool(x.min() >= low.real and y.min() >= low.imag and x.max() <= high.real and y.max() <= high.imag)
-
-
-def _touches(box: Box, points: Points) -> bool:
-    x, y = points.real, points.imag
-    return bool(x.min() <= box.x1 and y.min() <= box.y1 and x.max() >= box.x0 and y.max() >= box.y0)
 
 
 def _length(points: Points) -> float:

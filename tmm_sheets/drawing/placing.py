@@ -14,14 +14,12 @@ import numpy.typing as npt
 
 from tmm_sheets.drawing import labels
 from tmm_sheets.drawing.canvas import SMALLEST, AxisNumber, Canvas, PlacedNote
-from tmm_sheets.drawing.crowded import Crowded
 from tmm_sheets.drawing.ink_index import WORSE, InkIndex, distance, enters
-from tmm_sheets.drawing.lettering import letter, strokes, widened
-from tmm_sheets.drawing.marks import Arc, Box, Line, Mark, Points, Polyline, Text, flat
+from tmm_sheets.drawing.lettering import PEN, extents, letter
+from tmm_sheets.drawing.marks import Arc, Box, Line, Mark, Points, Polyline, Text, flat, run
 from tmm_sheets.drawing.owners import AT
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.drawing.text_boxes import CLEAR
-from tmm_sheets.drawing.text_layout import wrapped
+from tmm_sheets.drawing.text_layout import CLEAR, Crowded, wrapped
 
 THIN = 0.4
 """Width of the widest lines that yield, mm: axes; contours and vectors do not, labels keep off them."""
@@ -72,9 +70,9 @@ def interrupt(canvas: Canvas) -> None:
 
 def _gaps(line: Points, letters: _Letters, near: npt.NDArray[np.intp]) -> tuple[Stretch, ...]:
     """Where a line of chords is interrupted, in shares of its length; nowhere if too little of it would be left."""
-    run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(line)))))
-    hidden = sorted(_under(line, run, letters, near))
-    gaps, reached, length = list[Stretch](), 0.0, float(run[-1])
+    along = run(line)
+    hidden = sorted(_under(line, along, letters, near))
+    gaps, reached, length = list[Stretch](), 0.0, float(along[-1])
     for a, b in hidden:
         if gaps and a - reached < SHOWN:
             gaps[-1] = gaps[-1][0], max(reached, b)
@@ -97,13 +95,9 @@ def _chords(mark: Mark) -> Points:
 @lru_cache(maxsize=4096)
 def _ink(text: str, height: float, wide: float) -> tuple[complex, complex] | None:
     """Corners of the ink of a run of letters from its beginning."""
-    drawn = strokes(text, height)
-    if not drawn:
-        return None
-    z = np.concatenate(drawn)
-    z = z if wide == 1.0 else widened(z, wide)
-    clear = complex(CLEAR, CLEAR)
-    return complex(z.real.min(), z.imag.min()) - clear, complex(z.real.max(), z.imag.max()) + clear
+    left, bottom, right, top = extents(text)
+    low, high = (height * complex(wide * x, y) for x, y in ((left + PEN / 2, bottom + PEN / 2), (right - PEN / 2, top - PEN / 2)))
+    return (low - complex(CLEAR, CLEAR), high + complex(CLEAR, CLEAR)) if left <= right else None
 
 
 def _letters(texts: Sequence[Text]) -> _Letters | None:
@@ -118,7 +112,7 @@ def _letters(texts: Sequence[Text]) -> _Letters | None:
     return _Letters(at, u, low, high, np.array([x.min(axis=0), y.min(axis=0), x.max(axis=0), y.max(axis=0)]))
 
 
-def _under(line: Points, run: npt.NDArray[np.float64], letters: _Letters, near: npt.NDArray[np.intp]) -> Iterator[Stretch]:
+def _under(line: Points, along: npt.NDArray[np.float64], letters: _Letters, near: npt.NDArray[np.intp]) -> Iterator[Stretch]:
     """Stretches of a line of chords that lie under some runs of letters."""
     z = (line - letters.at[near, None]) * letters.u[near, None].conj()
     low, high = letters.low[near, None], letters.high[near, None]
@@ -132,9 +126,9 @@ def _under(line: Points, run: npt.NDArray[np.float64], letters: _Letters, near: 
             within = (begin >= least) & (begin <= most)
             enter = np.maximum(enter, np.where(d == 0, np.where(within, 0.0, 1.0), np.minimum(a, b)))
             leave = np.minimum(leave, np.where(d == 0, np.where(within, 1.0, 0.0), np.maximum(a, b)))
-    length = np.diff(run)
+    length = np.diff(along)
     for j, i in np.argwhere(leave > enter):
-        yield float(run[i] + enter[j, i] * length[i]), float(run[i] + leave[j, i] * length[i])
+        yield float(along[i] + enter[j, i] * length[i]), float(along[i] + leave[j, i] * length[i])
 
 
 def even(canvas: Canvas, numbers: Sequence[AxisNumber]) -> None:

@@ -8,6 +8,7 @@ from itertools import pairwise
 from math import copysign, pi
 
 from tmm_sheets.drawing.canvas import Canvas, in_role
+from tmm_sheets.drawing.ink import chord
 
 HINGE = 1.6
 """Radius of a hinge's circle, mm."""
@@ -42,27 +43,15 @@ def pivot(canvas: Canvas, at: complex, down: complex = -1j, style: str = "main")
 @in_role("link")
 def bar(canvas: Canvas, points: Iterable[complex], hinges: Iterable[complex], style: str = "main", radius: float = HINGE) -> None:
     """Link line through points, interrupted inside every hinge circle that it passes or ends at."""
-    p = list(points)
     circles = list(hinges)
-    for a, b in pairwise(p):
-        length = abs(b - a)
-        if length < 1e-9:
-            continue
-        u = (b - a) / length
-        cuts = []
-        for c in circles:
-            t = ((c - a) * u.conjugate()).real
-            d = abs(((c - a) * u.conjugate()).imag)
-            half = (radius**2 - d**2) ** 0.5 if d < radius else 0.0
-            if half and t - half < length:  # one farther along the line is no concern of this bar
-                cuts.append((t - half, t + half))
-        start = 0.0
-        for lo, hi in sorted(cuts):
-            if lo > start:
-                canvas.line(a + start * u, a + lo * u, style)
-            start = max(start, hi)
-        if start < length:
-            canvas.line(a + start * u, b, style)
+    for a, b in pairwise(points):
+        hidden = filter(None, (chord(centre, radius, a, b) for centre in circles))
+        start = 0.0, a
+        for enter, leave in sorted([((abs(p - a), p), (abs(q - a), q)) for p, q in hidden], key=lambda part: part[0][0]):
+            if enter[0] > start[0]:
+                canvas.line(start[1], enter[1], style)
+            start = max(start, leave, key=lambda end: end[0])
+        canvas.line(start[1], b, style)
 
 
 @in_role("symbol")

@@ -1,4 +1,4 @@
-"""Text that fits its place: titles broken between words, columns of tables as wide as their texts.
+"""Text in its place: rectangles of lettering, titles broken between words, columns of tables, and what has no room.
 
 Titles are broken before their letters get narrower, and these before they get smaller.
 """
@@ -6,11 +6,84 @@ Titles are broken before their letters get narrower, and these before they get s
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 from itertools import product
 from math import ceil
 from typing import NamedTuple
 
-from tmm_sheets.drawing.lettering import SIZES, letter
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.drawing.lettering import SIZES, advance, letter
+from tmm_sheets.drawing.lettering import widened as stretched
+from tmm_sheets.drawing.marks import Points, Text
+from tmm_sheets.words import tell
+
+CLEAR = 0.4
+"""Clearance round lettering, mm."""
+SHELF = 0.8
+"""Clearance between lettering and the shelf it stands on, mm."""
+
+
+def text_box(mark: Text) -> Points:
+    """Corners, complex (4,) mm, of the rectangle round a run of text; slanted letters reach beyond their advance."""
+    corners = _corners(mark.text, mark.height)
+    corners = corners if mark.wide == 1.0 else stretched(corners, mark.wide)
+    return np.asarray(mark.at + (complex(np.cos(mark.angle), np.sin(mark.angle)) * corners if mark.angle else corners))
+
+
+def text_boxes(marks: Sequence[Text]) -> Points:
+    """Corners of the rectangles round runs of text, complex (n, 4) mm; as :func:`text_box` for each."""
+    if not marks:
+        return np.empty((0, 4), complex)
+    found = np.array([mark.at for mark in marks])[:, None] + np.array([_corners(mark.text, mark.height) for mark in marks])
+    for k in (k for k, mark in enumerate(marks) if mark.angle or mark.wide != 1.0):
+        found[k] = text_box(marks[k])
+    return np.asarray(found)
+
+
+def bounds_of(corners: Points) -> npt.NDArray[np.float64]:
+    """Axis-aligned rectangles x0, y0, x1, y1, (n, 4), round the corners of each row, complex (n, k)."""
+    x, y = corners.real, corners.imag
+    return np.array([x.min(axis=1), y.min(axis=1), x.max(axis=1), y.max(axis=1)]).T
+
+
+def size(markup: str, height: float) -> tuple[float, float]:
+    """Width and height of lettering with its indices, mm."""
+    laid = letter(markup, height)
+    return laid.width + 0.15 * height, laid.ascent + laid.descent
+
+
+@lru_cache(maxsize=10_000)
+def run_corners(markup: str, height: float) -> tuple[Points, ...]:
+    """Corners of the rectangles of the runs of lettering, complex (4,) each, mm from the lower left corner of the whole."""
+    laid = letter(markup, height)
+    return tuple(run.at + 1j * laid.descent + _corners(run.text, run.height) for run in laid.runs)
+
+
+def spread(heights: list[float], least: float) -> list[float]:
+    """Sorted heights, mm, moved apart to at least ``least``, as little as needed and about their mean."""
+    out = list(heights)
+    for _ in range(200):
+        moved = False
+        for i in range(len(out) - 1):
+            short = least - (out[i + 1] - out[i])
+            if short > 1e-3:
+                out[i] -= short / 2
+                out[i + 1] += short / 2
+                moved = True
+        if not moved:
+            break
+    return out
+
+
+@lru_cache(maxsize=10_000)
+def _corners(text: str, h: float) -> Points:
+    """Corners, complex (4,) mm, of the rectangle round text of the height ``h`` along the x axis from the origin."""
+    w, drop = advance(text, h), -0.3 * h if any(c in "рудцщфgjpqyβγζημξρφχψς,;()" for c in text) else 0.0
+    return np.array([complex(0, drop), complex(w, drop), complex(w + 0.15 * h, h), complex(0, h)])
+
 
 GAP, LEAST = 2.0, 1.0
 """Excess of a column over its widest text, mm: if there is room, and at least."""
@@ -48,6 +121,15 @@ def parted(rows: Sequence[Sequence[str]], width: float, height: float) -> list[l
     return [[list(row) for row in rows]]
 
 
+def shared(widths: Sequence[float], need: Sequence[float]) -> list[float] | None:
+    """Widths of columns, those below their ``need`` widened by what the others can spare; None if that is not enough."""
+    lack = sum(max(n - w, 0.0) for n, w in zip(need, widths, strict=True))
+    spare = sum(max(w - n, 0.0) for n, w in zip(need, widths, strict=True))
+    if not lack:
+        return list(widths)
+    return [n if w < n else w - (w - n) * lack / spare for n, w in zip(need, widths, strict=True)] if lack <= spare else None
+
+
 def widened(widths: Sequence[float], rows: Sequence[Sequence[str]], height: float) -> list[float]:
     """Redistribute the widths of columns, mm: those whose texts do not fit take width from those that have it to spare.
 
@@ -56,12 +138,8 @@ def widened(widths: Sequence[float], rows: Sequence[Sequence[str]], height: floa
     """
     for size, gap in product((size for size in reversed(SIZES) if 2.5 <= size <= height), (GAP, LEAST)):
         need = needs(rows, size, gap)
-        lack = sum(max(n - w, 0.0) for n, w in zip(need, widths, strict=True))
-        spare = sum(max(w - n, 0.0) for n, w in zip(need, widths, strict=True))
-        if not lack:
-            return list(widths)
-        if lack <= spare:
-            return [n if w < n else w - (w - n) * lack / spare for n, w in zip(need, widths, strict=True)]
+        if (found := shared(widths, need)) is not None:
+            return found
     share = sum(widths) / sum(need)
     return [n * share for n in need]
 
@@ -114,3 +192,26 @@ def wrapped(text: str, height: float, count: int) -> list[str]:
         if len(lines) <= count:
             return [" ".join(line).replace(TOGETHER, " ") for line in lines]
         room += height
+
+
+@dataclass(frozen=True)
+class Crowded:
+    """A label that found no free place; the sheet reports it."""
+
+    text: str
+    at: complex
+
+    def __str__(self) -> str:
+        return tell('no free place for "{text}" at ({x:.0f}, {y:.0f}): it stands over lines').format(
+            text=self.text, x=self.at.real, y=self.at.imag
+        )
+
+
+@dataclass(frozen=True)
+class Shortened(Crowded):
+    """A text of the title block that was too long for its cell and was shortened to ``left``."""
+
+    left: str
+
+    def __str__(self) -> str:
+        return tell('the title block has no room for all of "{text}": "{left}" stands there').format(text=self.text, left=self.left)

@@ -8,8 +8,8 @@ from types import MappingProxyType
 
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import MarkGroup, Part
-from tmm_sheets.drawing.crowded import Crowded
 from tmm_sheets.drawing.marks import Drawing, PlacedFrame
+from tmm_sheets.drawing.text_layout import Crowded
 from tmm_sheets.remarks import Remark
 from tmm_sheets.words import marked, tell
 

@@ -15,14 +15,13 @@ from numpy.typing import NDArray
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas, Label, Part
-from tmm_sheets.drawing.crowded import Shortened
-from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.ink import polyline_inside
+from tmm_sheets.drawing.ink_index import dense
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Drawing, Line, Mark, Points, Text, View, flat
 from tmm_sheets.drawing.paper import A1
 from tmm_sheets.drawing.placing import place
-from tmm_sheets.drawing.text_boxes import bounds_of, text_box, text_boxes
+from tmm_sheets.drawing.text_layout import Shortened, bounds_of, text_box, text_boxes
 from tmm_sheets.drawing.title_block import block, draw_frame
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets import composition

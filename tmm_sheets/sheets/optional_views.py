@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas, Label, Part
-from tmm_sheets.drawing.evenness import dense
-from tmm_sheets.drawing.ink_index import Cells, sum_area
+from tmm_sheets.drawing.ink_index import Cells, dense, sum_area
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild

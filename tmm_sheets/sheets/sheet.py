@@ -15,7 +15,6 @@ from tmm_sheets import kept
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import MarkGroup, Part
-from tmm_sheets.drawing.crowded import Crowded, Shortened
 from tmm_sheets.drawing.marks import (
     Arc,
     Dimension,
@@ -31,6 +30,7 @@ from tmm_sheets.drawing.marks import (
     Text,
     View,
 )
+from tmm_sheets.drawing.text_layout import Crowded, Shortened
 from tmm_sheets.errors import CannotBuild, together
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.answered import Answered

@@ -7,7 +7,7 @@ import pytest
 from tests.few import few
 from tests.project_files import project
 from tmm_sheets.drawing.marks import Text
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.sheets.components import clear_dimensions as cam_scale
 from tmm_sheets.sheets.sheet import composed
 

@@ -10,11 +10,11 @@ import pytest
 from tests.few import all_hold, few
 from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.evenness import dense
+from tmm_sheets.drawing.ink_index import dense
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Box, Line, Polyline, Text, flat
 from tmm_sheets.drawing.placing import place
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.methods.cams.cam_profile import DIAGRAMS, cam
 from tmm_sheets.sheets.cams.cam import HEADS
 from tmm_sheets.sheets.composition import is_meant

@@ -15,7 +15,7 @@ from tests.methods.linkage.shaper_truth import Shaper
 from tmm_sheets import catalogue
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.wheel_methods import flywheel
 from tmm_sheets.project import Project

@@ -9,7 +9,7 @@ from tests import labels
 from tmm_sheets import catalogue
 from tmm_sheets.drawing.ink_index import InkIndex, enters
 from tmm_sheets.drawing.marks import Text
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 

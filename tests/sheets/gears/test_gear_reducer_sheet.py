@@ -14,7 +14,7 @@ from tests.methods.gears import reducer_cases as cases
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Arc, Box, Line, Polyline, Text, flat
 from tmm_sheets.drawing.placing import place
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.methods.gears.gear_pair import gear_pair, settled
 from tmm_sheets.methods.gears.reducer import reducer
 from tmm_sheets.resources import template

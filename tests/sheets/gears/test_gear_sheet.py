@@ -13,7 +13,7 @@ from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Polyline, Text, flat
 from tmm_sheets.drawing.placing import place
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.methods.gears.gear_pair import gear_pair
 from tmm_sheets.numbers import fixed
 from tmm_sheets.project import Project

@@ -8,7 +8,7 @@ from tests.evenness import gap
 from tests.few import few, seldom
 from tests.project_files import project
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.evenness import empty_cells
+from tmm_sheets.drawing.ink_index import empty_cells
 from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.sheets.gears import train
 from tmm_sheets.sheets.gears.train_scheme import TrainScheme, columns_of

@@ -7,7 +7,7 @@ from tests.few import seldom
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.ink import polyline_inside
 from tmm_sheets.drawing.marks import Text, flat
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.words import on_paper
 

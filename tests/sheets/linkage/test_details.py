@@ -1,6 +1,5 @@
 """A crowd of letters goes into an enlarged detail, and nothing is named twice or by nobody; one rule says what is dense."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -70,7 +69,7 @@ def test_what_is_drawn_or_found_no_room_is_not_asked_again():
     part = canvas.labels[0].part
     below = [label for label in canvas.labels if label.anchor.imag > 260]
     canvas.parts.append(canvas.parts[part])
-    canvas.labels[:] = [replace(label, part=len(canvas.parts) - 1) if label in below else label for label in canvas.labels]
+    canvas.labels[:] = [label._replace(part=len(canvas.parts) - 1) if label in below else label for label in canvas.labels]
     first, second = details._crowds(canvas, ())
     assert details._nth(None, canvas, {"nth": 1}) == first
     assert details._nth(None, canvas, {"nth": 2}) == second

@@ -15,7 +15,7 @@ from tmm_sheets.drawing import placing
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.marks import Line, Polyline, Text
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.components import graphs

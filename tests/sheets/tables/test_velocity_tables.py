@@ -9,7 +9,7 @@ from tests.few import seldom
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Line, Text
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.linkage import given_position
 from tmm_sheets.sheets.sheet import composed

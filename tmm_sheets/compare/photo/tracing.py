@@ -55,7 +55,7 @@ from tmm_sheets.compare.photo.traces import (
 )
 from tmm_sheets.drawing.marks import Points, Text
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 
 BAR = 1.5  # mm about lettering within which its bars are
 OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged

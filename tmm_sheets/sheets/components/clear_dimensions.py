@@ -15,7 +15,7 @@ from tmm_sheets.drawing.canvas import Canvas, lettered
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.drawing.text_boxes import CLEAR, spread
+from tmm_sheets.drawing.text_layout import CLEAR, spread
 from tmm_sheets.sheets.player import PlayerStage
 
 ALONG = 1.2

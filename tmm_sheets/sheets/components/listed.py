@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken, letter, size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.text_boxes import CLEAR
-from tmm_sheets.drawing.text_layout import GAP, LEADING, LEAST, TOGETHER, Heading, heading, needs, parted, size_in, widened
+from tmm_sheets.drawing.text_layout import CLEAR, GAP, LEADING, LEAST, TOGETHER, Heading, heading, needs, parted, size_in, widened
 from tmm_sheets.sheets.player import once
 from tmm_sheets.words import tr
 

@@ -16,8 +16,7 @@ from tmm_sheets.drawing.ink import arcs_inside, chords, polyline_inside, segment
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Arc, Box, Dimension, Points, Role
-from tmm_sheets.drawing.text_boxes import spread
-from tmm_sheets.drawing.text_layout import LEAST, needs
+from tmm_sheets.drawing.text_layout import LEAST, needs, spread
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets.components.listed import LARGE, LETTERS, ROW
 from tmm_sheets.sheets.player import PlayerStage

@@ -13,7 +13,7 @@ from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.text_boxes import spread
+from tmm_sheets.drawing.text_layout import spread
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.player import PlayerStage, placed, play, ratio, standard
 from tmm_sheets.words import tr

@@ -25,7 +25,7 @@ from tmm_sheets.drawing.ink_index import distance
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame, Points, Provenance, Text, flat
 from tmm_sheets.drawing.owners import AT, CLEARLY
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.numbers import number
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.border_solver import WITHOUT_DETAILS, BorderNode, FigureNode, Form
