@@ -3,7 +3,7 @@
 Usage: python -m tests.curve_floors [--ciphers N --seed S] [--each] [PROJECT ...]; without names all shipped projects, those of
 the tests and the ciphers.
 
-Of every graph the extent across its axis, of all its curves together (:mod:`tmm_sheets.construction.readable`); of one that is
+Of every graph the extent across its axis, of all its curves together (:mod:`tmm_sheets.construction.scale`); of one that is
 shown enlarged too that of the enlarged one. What is below its floor is told; it is explained where ``check`` tells it as well.
 Exit status 1 when anything is unexplained.
 """
@@ -23,7 +23,7 @@ import numpy as np
 
 from tests.labels import add_options, chosen
 from tmm_sheets import catalogue
-from tmm_sheets.construction.readable import CURVE, MAIN, POLE, TOOTH
+from tmm_sheets.construction.scale import CURVE, MAIN, POLE, TOOTH
 from tmm_sheets.drawing.marks import flat
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed

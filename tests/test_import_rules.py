@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1] / "tmm_sheets"
 MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts): p for p in ROOT.rglob("*.py")}
-NEUTRAL = ("apart box csv_tables encodings errors files kept meanings numbers program quoting remarks resources progress spelling "
+NEUTRAL = ("apart box csv_tables encodings errors files kept meanings numbers program quoting resources progress spelling "
            "terminal toml_file toml_lines version words")
 METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.integration"
 

@@ -291,9 +291,9 @@ class Project:
 
     @property
     def _change_points(self) -> Passages:
-        from tmm_sheets.methods.linkage.positions import passages
+        from tmm_sheets.methods.linkage.positions import Passages
 
-        return passages(self.mechanism)
+        return Passages(self.mechanism)
 
     @property
     def turning_back(self) -> dict[str, list[float]]:

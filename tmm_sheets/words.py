@@ -18,6 +18,7 @@ from decimal import Decimal
 from functools import cache, lru_cache
 from pathlib import Path
 from string import Formatter
+from typing import Any
 
 from tmm_sheets.resources import template
 
@@ -255,3 +256,23 @@ def plural_form(forms: Sequence[str], n: int, language: str) -> str:
 def _plurals(language: str) -> tuple[Callable[[int], int], int]:
     rule: Callable[[int], int] = getattr(_catalogue(language), "plural", lambda n: int(n != 1))
     return rule, len({rule(n) for n in range(200)})
+
+
+# --- remarks ---------------------------------------------------------------------------------------------------------------
+
+
+class Remark:
+    """A text of the catalogues, or its two forms of which ``count`` chooses one, with its numbers and names.
+
+    In words of the person at the machine: kept as what it is about, put into words when it is told. A value may be a remark itself.
+    """
+
+    def __init__(self, text: str | tuple[str, str], values: Mapping[str, Any] | None = None, count: int = 0) -> None:
+        self.text, self.values, self.count = text, values or {}, count
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Remark) and vars(self) == vars(other)
+
+    def __str__(self) -> str:
+        said = tell(self.text) if isinstance(self.text, str) else tell_n(*self.text, self.count)
+        return said.format(**{name: str(value) if isinstance(value, Remark) else value for name, value in self.values.items()})

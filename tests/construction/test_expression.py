@@ -15,7 +15,7 @@ from tmm_sheets.construction.expression import Argument, lettered
 from tmm_sheets.construction.step import Given, GivenNumber, GivenPoint, Plan, Reported, Rule, Step
 from tmm_sheets.methods.flywheel.flywheel import ACCELERATION
 from tmm_sheets.methods.flywheel.works import PLOT
-from tmm_sheets.methods.linkage.velocities import ANGULAR_VELOCITY, RIGID, SIMILAR
+from tmm_sheets.methods.linkage.motion import ANGULAR_VELOCITY, RIGID, SIMILAR
 
 KNOWN = expression.primitives(ar)
 RNG = np.random.default_rng(7)

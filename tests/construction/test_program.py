@@ -16,7 +16,7 @@ from tmm_sheets.construction.function import NARROW, Function, Replay, fill
 from tmm_sheets.construction.program import GIVEN, NUMBER, REAL, Language, program, written
 from tmm_sheets.construction.step import Given, GivenNumber, Rule, Step
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.mechanism.groups import slotted
+from tmm_sheets.mechanism.groups import two_links
 from tmm_sheets.methods.linkage import forces, zhukovsky
 
 ROOMS = ("tmm_sheets.construction", "tmm_sheets.mechanism", "tmm_sheets.methods.linkage", "tmm_sheets.methods.integration")
@@ -65,7 +65,7 @@ def test_every_operation_is_known():
     assert found <= known
 
 
-PLAIN = [r for r in RULES if r.takes and r is not slotted.ALONG_TANGENT and r.tree(len(r.takes)) is not None
+PLAIN = [r for r in RULES if r.takes and r is not two_links.ALONG_TANGENT and r.tree(len(r.takes)) is not None
          and "curve" not in (*r.takes, r.gives)
          and all(o.function is None or o.function.primitive.plain for o in operations(r.tree(len(r.takes))))]
 
@@ -94,7 +94,7 @@ def gives_its_value(rule):
 @pytest.mark.parametrize(("rule", "kinds"), [
     (forces.MOMENTS, ("point", "point", "force", "number", "point", "force", "number")),
     (zhukovsky.BALANCE, ("point", "point", "direction", "point", "force")),
-    (slotted.ALONG_TANGENT, ("point", "point", "point", "length", "number"))])
+    (two_links.ALONG_TANGENT, ("point", "point", "point", "length", "number"))])
 def test_rules_of_more_arguments(rule, kinds):
     rng = np.random.default_rng(3)
     args = rows(*(drawn(rng, kind) for kind in kinds))

@@ -8,7 +8,7 @@ import pytest
 from tests.few import few
 from tests.living import javascript
 from tests.methods.flywheel.as_steps import AsSteps
-from tmm_sheets.methods.flywheel.energy_mass import highest
+from tmm_sheets.methods.flywheel.energy_mass import continuous_argmax
 from tmm_sheets.methods.flywheel.wheel_methods import flywheel
 from tmm_sheets.task.schema import FlywheelTable
 
@@ -37,7 +37,7 @@ def test_the_greatest_value(n, tmp_path):
     def f(i):
         return lambda t: series(c[i], t) + height[i] * np.abs(t - corner[i]) + slope[i] * t
 
-    own = [float(f(i)(np.array([highest(f(i), samples)]))[0]) for i in range(n)]
+    own = [float(f(i)(np.array([continuous_argmax(f(i), samples)]))[0]) for i in range(n)]
     run = MODULES + SERIES + """
     const result = ({ samples, c, corner, height, slope }) => c.map((one, i) =>
       greatest((t) => series(one, t) + height[i] * Math.abs(t - corner[i]) + slope[i] * t, samples));

@@ -18,14 +18,13 @@ from tmm_sheets.lab.stress.invariants import State
 from tmm_sheets.mechanism.groups import RRP
 from tmm_sheets.mechanism.groups.contexts import Outline
 from tmm_sheets.mechanism.groups.dead_centres import PIN_ANGLE
-from tmm_sheets.mechanism.groups.hinged import RRRKind
+from tmm_sheets.mechanism.groups.two_links import RRRKind
 from tmm_sheets.mechanism.model import Crank, Guide, Link, StructuralGroup
-from tmm_sheets.methods.linkage.accelerations import acceleration_plan
 from tmm_sheets.methods.linkage.checks import check_turn
 from tmm_sheets.methods.linkage.cycle import dead_positions
 from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics
+from tmm_sheets.methods.linkage.motion import acceleration_plan, velocity_plan
 from tmm_sheets.methods.linkage.positions import position_plan
-from tmm_sheets.methods.linkage.velocities import velocity_plan
 from tmm_sheets.sheets.linkage import link_marks
 
 REACH, AHEAD = 0.12, 0.7

@@ -15,10 +15,10 @@ from tests.project_files import FOUR_BAR, write
 from tmm_sheets import catalogue, kept, words
 from tmm_sheets.__main__ import run
 from tmm_sheets.project import Project
-from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets import answered, composing, composition, sheet
 from tmm_sheets.sheets.answered import Answered
 from tmm_sheets.task.variant import parse
+from tmm_sheets.words import Remark
 
 SHEETS = [(name, n) for name, count in (("lugansk/shaper", 4), ("press", 4), ("sixbar/8:3", 2), ("transport/press@07-ЭПС-718", 3))
           for n in range(1, count + 1)]  # fmt: skip

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tmm_sheets.drawing.text_boxes import text_box
 
 from tests.few import few
 from tests.project_files import EVEN, FOUR_BAR, MOMENT, SLIDER, merged, project, write
@@ -15,6 +14,7 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Polyline, Text, flat
 from tmm_sheets.drawing.placing import place
+from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import composing as sheets
 from tmm_sheets.sheets.composing import BESIDE, INSIDE, TITLE_BLOCK, TOUCH, leaving

@@ -18,9 +18,9 @@ from tmm_sheets.construction.expression import primitive
 from tmm_sheets.lab.stress import cases, change_points, invariants
 from tmm_sheets.lab.stress.cases import BOUNDS, SCENES, memory, run_case
 from tmm_sheets.lab.stress.invariants import State
-from tmm_sheets.mechanism.groups import PRP, RRP, RRR, hinged
+from tmm_sheets.mechanism.groups import PRP, RRP, RRR, two_links
 from tmm_sheets.mechanism.model import Crank, Guide, StructuralGroup
-from tmm_sheets.methods.linkage import accelerations, forces, positions, velocities, zhukovsky
+from tmm_sheets.methods.linkage import forces, motion, positions, zhukovsky
 
 CASES = 6 * len(SCENES)
 MANY = 10 * len(SCENES)
@@ -205,19 +205,19 @@ def mutated(rule, compute):
 
 TURNED = "derivative of velocity = acceleration"
 SPOILT = {
-    "half of the Coriolis acceleration": (accelerations, "CORIOLIS", lambda a, w, v, u: a + 1j * w * (u - v), TURNED),
+    "half of the Coriolis acceleration": (motion, "CORIOLIS", lambda a, w, v, u: a + 1j * w * (u - v), TURNED),
     "half of it, seen by the forces": (
-        accelerations, "CORIOLIS", lambda a, w, v, u: a + 1j * w * (u - v), "power = change of energy"),
+        motion, "CORIOLIS", lambda a, w, v, u: a + 1j * w * (u - v), "power = change of energy"),
     "half of it, seen by a project": (
-        accelerations, "CORIOLIS", lambda a, w, v, u: a + 1j * w * (u - v), "power of a project = change of its energy"),
+        motion, "CORIOLIS", lambda a, w, v, u: a + 1j * w * (u - v), "power of a project = change of its energy"),
     "mass of the crank twice": (forces, "BESIDE_MASS", lambda j, m, s, o: j, "moment of an uneven crank is constant"),
-    "Coriolis acceleration the other way": (accelerations, "CORIOLIS", lambda a, w, v, u: a - 2j * w * (u - v), TURNED),
-    "normal acceleration from the centre": (accelerations, "NORMAL", lambda a, w, q, b: a + w * w * (b - q), TURNED),
+    "Coriolis acceleration the other way": (motion, "CORIOLIS", lambda a, w, v, u: a - 2j * w * (u - v), TURNED),
+    "normal acceleration from the centre": (motion, "NORMAL", lambda a, w, q, b: a + w * w * (b - q), TURNED),
     "arcsine instead of atan2": (rules, "RAY", arcsine, "velocity closure"),
     "arcsine on the right side": (rules, "RAY", arcsine_on_the_right_side, "closure on guides"),
-    "side by the picture": (hinged.RRRKind, "crosses", nearest, "assembly side"),
+    "side by the picture": (two_links.RRRKind, "crosses", nearest, "assembly side"),
     "angular velocity turned round": (
-        velocities.Velocities, "TURNING", lambda *z: -velocities.turning(*z), "velocity closure"),
+        motion.Velocities, "TURNING", lambda *z: -motion.turning(*z), "velocity closure"),
     "inertia couple along epsilon": (forces, "COUPLE", lambda j, e: j * e, "power = change of energy"),
     "weight upwards": (forces, "WEIGHT", lambda m, g: 1j * m * g, "power = change of energy"),
     "arm of a couple on the lever": (zhukovsky, "COUPLE_FORCE", lambda m, x, y: 1j * m * ar.ray(x, y), "lever = kinetostatics"),
@@ -243,7 +243,7 @@ def test_lines_that_fall_together_are_caught(monkeypatch):
         cases = [dict(run_case(11, case)[1]) for case in folding]
         return [sum(not values.get(name, 0.0) <= BOUNDS[name][0] for values in cases) for name in invariants]
 
-    monkeypatch.setattr(velocities.MotionPolygon, "known", lambda self, group: self.positions.known_sine(group))
+    monkeypatch.setattr(motion.MotionPolygon, "known", lambda self, group: self.positions.known_sine(group))
     assert min(exceeded("velocity through a change point", "acceleration through a change point")) >= 13
     monkeypatch.undo()
     monkeypatch.setattr(invariants, "limits_of_forces", lambda *of: {})
@@ -269,7 +269,7 @@ def test_command(capsys, monkeypatch):
 
 
 def test_command_tells_what_is_exceeded(capsys, monkeypatch):
-    monkeypatch.setattr(accelerations, "CORIOLIS", mutated(accelerations.CORIOLIS, lambda a, w, v, u: a + 1j * w * (u - v)))
+    monkeypatch.setattr(motion, "CORIOLIS", mutated(motion.CORIOLIS, lambda a, w, v, u: a + 1j * w * (u - v)))
     monkeypatch.setattr(cases, "memory", lambda: 1.0)
     assert run(["stress", "--cases", "36"]) == 1
     out, err = capsys.readouterr()

@@ -104,11 +104,8 @@ def turned(u: Vectors) -> Vectors:
     return 1j * u
 
 
-def _plain_lines(p: Points, u: Directions, q: Points, v: Directions, det: Reals = None, way: Reals = None) -> Points:
-    return p + _plain_cross(q - p, v) / _plain_cross(u, v) * u
-
-
-@primitive("lines meet", plain=_plain_lines, guard=lambda p, u, q, v, det=None, way=None: _plain_cross(u, v) ** 2)
+@primitive("lines meet", plain=lambda p, u, q, v, det=None, way=None: p + _plain_cross(q - p, v) / _plain_cross(u, v) * u,
+           guard=lambda p, u, q, v, det=None, way=None: _plain_cross(u, v) ** 2)
 def line_line(p: Points, u: Directions, q: Points, v: Directions, det: Reals = None, way: Reals = None) -> Points:
     """Intersection of the line through ``p`` along ``u`` with the line through ``q`` along ``v``; NaN when parallel.
 
@@ -158,12 +155,8 @@ def _plain_arcs(c1: Points, r1: Reals, c2: Points, r2: Reals, side: Signs, heigh
     return c1 + (0.5 + (r1 - r2) * (r1 + r2) * share + 1j * (side * np.sqrt(area) * share)) * e
 
 
-def _between_arcs(c1: Points, r1: Reals, c2: Points, r2: Reals, side: Signs, height: Reals = None, distance: Reals = None,
-                  line: Directions = None) -> Reals:
-    return _gaps(c1, r1, c2, r2)[2] / (4 * (r1 * r2) ** 2)
-
-
-@primitive("arc cuts arc", plain=_plain_arcs, guard=_between_arcs)
+@primitive("arc cuts arc", plain=_plain_arcs, guard=lambda c1, r1, c2, r2, side, height=None, distance=None, line=None: (
+    _gaps(c1, r1, c2, r2)[2] / (4 * (r1 * r2) ** 2)))
 def arc_arc(c1: Points, r1: Reals, c2: Points, r2: Reals, side: Signs, height: Reals = None, distance: Reals = None,
             line: Directions = None) -> Points:
     """Intersection of two circles; ``side`` +1 is left of the line from ``c1`` to ``c2``, -1 right.
@@ -191,14 +184,9 @@ def arc_arc(c1: Points, r1: Reals, c2: Points, r2: Reals, side: Signs, height: R
 
 def half_chord(d: Reals, r1: Reals, r2: Reals) -> Reals:
     """Half of the chord that two circles have together, their centres ``d`` apart."""
-    a, b, c = _sorted_three(r1, r2, d)
+    c, b, a = np.sort(np.stack(np.broadcast_arrays(r1, r2, d)), axis=0)
     four_area_squared = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))
     return np.sqrt(four_area_squared) / (2 * d)
-
-
-def _sorted_three(x: Reals, y: Reals, z: Reals) -> tuple[Reals, Reals, Reals]:
-    stacked = np.sort(np.stack(np.broadcast_arrays(x, y, z)), axis=0)
-    return stacked[2], stacked[1], stacked[0]
 
 
 def _chord(centre: Points, radius: Reals, p: Points, u: Directions) -> tuple[Reals, Reals]:

@@ -25,24 +25,17 @@ def _cross(u: Any, v: Any) -> Any:
     return (np.conj(u) * v).imag
 
 
-def _arcs(x: Any, p: Any, r1: Any, q: Any, r2: Any, side: Any, *known: Any) -> Any:
-    return _touching(_cross(x - p, x - q) / (np.abs(x - p) * np.abs(x - q)), known)
-
-
-def _arc_line(x: Any, p: Any, r: Any, q: Any, u: Any, side: Any, *known: Any) -> Any:
-    return _touching((np.conj(u) * (x - p)).real / (np.abs(x - p) * np.abs(u)), known)
-
-
 def _touching(sine: Any, known: tuple[Any, ...]) -> Any:
     """The sine; nothing where the half-chord, the first of what is known, is nothing: points tell no more than their rounding."""
     return np.where(np.asarray(known[0]) == 0, 0.0, sine) if known else sine
 
 
-def _lines(x: Any, p: Any, u: Any, q: Any, v: Any, *sine: Any) -> Any:
-    return sine[0] if sine else _cross(u, v) / (np.abs(u) * np.abs(v))
-
-
-_SINES: dict[Rule, Callable[..., Any]] = {rules.ARC_ARC: _arcs, rules.ARC_LINE: _arc_line, rules.LINE_LINE: _lines}
+_SINES: dict[Rule, Callable[..., Any]] = {
+    rules.ARC_ARC: lambda x, p, r1, q, r2, side, *known: _touching(_cross(x - p, x - q) / (np.abs(x - p) * np.abs(x - q)), known),
+    rules.ARC_LINE: lambda x, p, r, q, u, side, *known: _touching(
+        (np.conj(u) * (x - p)).real / (np.abs(x - p) * np.abs(u)), known),
+    rules.LINE_LINE: lambda x, p, u, q, v, *sine: sine[0] if sine else _cross(u, v) / (np.abs(u) * np.abs(v)),
+}
 """Sine of the angle at which the lines of a rule cross, from the crossing itself and the arguments of the rule."""
 
 

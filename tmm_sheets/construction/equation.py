@@ -375,7 +375,7 @@ def _pieces(node: Node) -> Iterator[str]:
     elif isinstance(node, Figures):
         yield _raised(node.text)
     elif isinstance(node, Sign):
-        yield node.text
+        yield node.text + " " * (node.text == ";")
     elif isinstance(node, FormulaRow):
         for i, part in enumerate(node.items):
             before = node.items[i - 1] if i else None

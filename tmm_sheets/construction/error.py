@@ -119,18 +119,16 @@ class Errors:
         """Error of a drawn step in millimetres of its plan, shape (n,) or (1,)."""
         return self.error(step) / self._mu[id(step)]
 
-    def of_plan(self, plan: Plan) -> Mapping[str, Floats]:
-        """Error of each point and length of a plan, mm, by the names of the steps."""
-        return {step.name: self.in_mm(step) for step in plan if step.rule.gives in (*_DRAWN, *_MEASURED) and _numeric(step.value)}
-
     def between(self, tail: Step, head: Step) -> Floats:
         """Error of the distance of two points in their unit, without that of reading it: along the line that joins them.
 
         Where the distance is no longer than its own error, any direction may be the one.
         """
-        k = self._combined({tail: -1.0, head: 1.0})
-        if k is None:
+        columns = [(known, share * np.eye(2)[None]) for step, share in ((tail, -1.0), (head, 1.0))
+                   if (known := self._of(step)) is not None]
+        if not columns:
             return np.zeros(1)
+        k = _square(_summed(columns)[1][1])
         away = np.atleast_1d(np.asarray(head.value) - np.asarray(tail.value))
         size = np.abs(away)
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -184,17 +182,13 @@ class Errors:
             # What was taken from a single position of another plan has its error there.
             places = [self._single.get(int(n), (int(n), k)) for n in known.sources]
             sources, at = np.array(places, dtype=np.intp).reshape(-1, 2).T
-            sizes = self._sizes_of(sources)
+            if len(self._sizes) < len(self._steps):
+                self._sizes = np.array([np.size(s.value) for s in self._steps], dtype=np.intp)
+            sizes = self._sizes[sources]
             at = np.where(sizes > 1, at % sizes, 0)  # the position that closes the cycle is the first again
             found.append((at, sources, (row @ known.jacobian[j]).reshape(-1, 2), (row @ known.scaled[j]).reshape(-1, 2)))
         at, sources, by, shares = (np.concatenate(parts) for parts in zip(*found, strict=True))
         return at, sources, by, shares
-
-    def _sizes_of(self, sources: Numbers) -> Numbers:
-        """How many values some sources have."""
-        if len(self._sizes) < len(self._steps):
-            self._sizes = np.array([np.size(step.value) for step in self._steps], dtype=np.intp)
-        return self._sizes[sources]
 
     def source(self, step: Step) -> int:
         """Number of a step among the sources of errors; -1 for what has none."""
@@ -389,11 +383,6 @@ class Errors:
                                 for m, w in ((jacobian, np.eye(2)), (scaled, _root(own))))
         covariance = _square(scaled)
         return _Known(sources, jacobian, scaled, covariance, ~(bend > _BENT / 2 * _greatest(covariance)))
-
-    def _combined(self, shares: Mapping[Step, float]) -> Matrices | None:
-        """Covariance of a sum of steps, correlations included."""
-        columns = [(k, share * np.eye(2)[None]) for step, share in shares.items() if (k := self._of(step)) is not None]
-        return _square(_summed(columns)[1][1]) if columns else None
 
     # --- lengths that are known -----------------------------------------------------------------------------------------
     def _note_lengths(self, step: Step) -> None:

@@ -197,8 +197,8 @@ class _List:
         return self._enter((NUMBER, x) if x == x else (NUMBER, "nan"), ProgramValue(NUMBER, (), "real", False, x))
 
     def thing(self, x: Any, gives: Type = "other") -> int:
-        """A constant that is no real number: a curve, a table."""
-        return self._enter((NUMBER, id(x)), ProgramValue(NUMBER, (), gives, False, x))
+        """A constant that is no real number: a point, a curve, a table."""
+        return self._enter((gives, x if gives == "complex" else id(x)), ProgramValue(NUMBER, (), gives, False, x))
 
     def constant(self, i: int) -> float | None:
         """The number that a real value is always; None where it is not."""
@@ -218,11 +218,7 @@ class _List:
         if None not in numbers:
             with np.errstate(all="ignore"):
                 return self.number(getattr(np, ufunc(does))(*map(np.float64, numbers)))
-        return self._simpler(does, of, numbers) if does in _SIMPLER else self.done(does, *of)
-
-    def _simpler(self, does: str, of: Parts, numbers: list[float | None]) -> int:
-        a, b = (*of, None)[:2], (*numbers, None)[:2]
-        return _SIMPLER[does](self, *a[:len(of)], *b[:len(of)])
+        return _SIMPLER[does](self, *of, *numbers) if does in _SIMPLER else self.done(does, *of)
 
     def _inside(self, i: int, does: str) -> Parts | None:
         """What a value is made of, if that is done to it."""
@@ -427,7 +423,7 @@ class _Walk:
             return parts[0]
         numbers = [self.list.constant(i) for i in parts]
         if None not in numbers:
-            return self.list.thing(_interned(complex(*numbers)), "complex")  # type: ignore[arg-type]
+            return self.list.thing(complex(*numbers), "complex")  # type: ignore[arg-type]
         return self.list.done("complex", *parts, gives="complex")
 
     def _applied(self, tree: Expression, args: Sequence[Parts], known: dict[int, Parts] | None = None) -> Parts:
@@ -535,7 +531,3 @@ class _Walk:
         return tuple(self.list.real("/", i, square) for i in self._product(a, self._part("conj", b)))
 
 
-@cache
-def _interned(z: complex) -> complex:
-    """The same object for the same number."""
-    return z

@@ -13,7 +13,7 @@ are :class:`Given` rows; a step takes them like numbers.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import nan
@@ -23,7 +23,7 @@ from typing import Any, Literal, Self
 import numpy as np
 
 from tmm_sheets.construction.expression import Expression, trace
-from tmm_sheets.words import marked
+from tmm_sheets.words import marked, tr
 
 # --- what is given ------------------------------------------------------------------------------------------------------
 
@@ -465,7 +465,7 @@ class Plan:
             self.auxiliaries[name] = self._step(name, rule, args, None, symbol)
         return self.auxiliaries[name]
 
-    def once(self, name: str, rule: Rule, *args: Any, symbol: str = "") -> Step:
+    def add_once(self, name: str, rule: Rule, *args: Any, symbol: str = "") -> Step:
         """Record a step once, whoever asks first; of others made of other steps the name takes a prime."""
         while name in self.steps and not _same(self.steps[name], rule, args):
             name += "′"
@@ -540,3 +540,62 @@ class Plan:
                     return step.name, labels
                 return step.name, tuple(label for label, b in zip(labels, bad, strict=True) if b)
         return None
+
+
+# --- plans by tables -------------------------------------------------------------------------------------------------------
+
+Letter = str | Callable[[], str]
+StepTable = dict[str, tuple[str, Letter, Rule] | tuple[str, Letter, Rule, str]]
+"""Steps by their names: what they take (names with a space between them), the letter, the rule, the sentence.
+
+A letter that differs from language to language is looked up when the step is recorded.
+
+Of a step that is there twice, for wheel 1 and wheel 2, ``#`` stands for the number in the letter. What it takes is the wheel's own
+where it has one, with a ' behind its name the mate's. Of other steps that are there twice (max and min) ``#`` stands in the name,
+too, and in what they take. The letter is empty for one that is called as the step.
+"""
+
+
+def record(plan: Plan, names: str, *tables: StepTable, wheel: str = "", given: Mapping[str, Any] | None = None) -> Step:
+    """Record steps one after another, each by the first table that has it; of a ``wheel`` "1" or "2" those that are there twice.
+
+    What they take is looked up on the plan, then among what is ``given``, numbers and steps of other plans. Returns the last step.
+    """
+    known = given or {}
+    for name in names.split():
+        takes, symbol, rule, *say = next(table[name] for table in tables if name in table)
+        letter = symbol if isinstance(symbol, str) else symbol()
+        args = [_taken(key, wheel, plan.steps, known) if wheel or key[-1] == "'" else
+                plan.steps[key] if key in plan.steps else known[key] for key in takes.replace("#", wheel).split()]
+        own = name.replace("#", wheel) if "#" in name else f"{name}{wheel if '#' in letter else ''}"
+        step = plan.add(own, rule, *args, symbol=letter.replace("#", wheel), say=tr(say[0]) if say else None)
+    return step
+
+
+def _taken(key: str, wheel: str, *there: Mapping[str, Any]) -> Any:
+    """What a step takes under a name."""
+    name = key.rstrip("'")
+    of = str(3 - int(wheel)) if wheel and name != key else wheel
+    for found in there:
+        for own in (f"{name}{of}", name):
+            if own in found:
+                return found[own]
+    raise KeyError(key)
+
+
+def planned(name: str, title: str, unit: str = "", labels: str = "") -> Callable[[Callable[[Any, Plan], None]],
+                                                                                 cached_property[Plan]]:
+    """Decorator of a method that records steps on a plan: the attribute is that plan, made when it is first read.
+
+    Behind its ``name`` stands the object's ``where``, if it has one; ``labels`` is the attribute with the labels of the positions.
+    """
+    def of(recorded: Callable[[Any, Plan], None]) -> cached_property[Plan]:
+        def made(self: Any) -> Plan:
+            plan = Plan(name + getattr(self, "where", ""), tr(title), unit, getattr(self, labels) if labels else ("",))
+            recorded(self, plan)
+            return plan
+
+        made.__doc__ = recorded.__doc__
+        return cached_property(made)
+
+    return of

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from tmm_sheets.construction import protocol, rules
 from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.mechanism.groups.contexts import CLOSE
-from tmm_sheets.methods.linkage import accelerations as acc
-from tmm_sheets.methods.linkage import velocities as vel
+from tmm_sheets.methods.linkage import motion
 from tmm_sheets.note.sections.kinematics import vector_equations
 from tmm_sheets.words import marked, tr
 
@@ -41,13 +40,13 @@ class Laid(NamedTuple):
 
 
 LAID = {
-    vel.CRANK_VELOCITY: Laid(marked("Velocity of the crank pin"), ROTATION, 1, 2, (0, 1)),
-    vel.RIGID: Laid(marked("Velocity of rotation"), ROTATION, 1, 1, (2, 3)),
-    acc.NORMAL: Laid(marked("Normal acceleration"),
+    motion.CRANK_VELOCITY: Laid(marked("Velocity of the crank pin"), ROTATION, 1, 2, (0, 1)),
+    motion.RIGID: Laid(marked("Velocity of rotation"), ROTATION, 1, 1, (2, 3)),
+    motion.NORMAL: Laid(marked("Normal acceleration"),
                      marked("A point that goes round a centre is drawn to it, the more the faster: ω²·l."), 2, 1, (2, 3), False),
-    acc.TANGENTIAL: Laid(marked("Tangential acceleration"),
+    motion.TANGENTIAL: Laid(marked("Tangential acceleration"),
                          marked("The link turns faster and faster: its point gains ε·l across the link."), 1, 1, (2, 3)),
-    acc.CORIOLIS: Laid(marked("Coriolis acceleration"),
+    motion.CORIOLIS: Laid(marked("Coriolis acceleration"),
                        marked("The block slides on a link that turns: half comes from the turning of its velocity, "
                               "half from the growing radius."), 1, 1, (2, 3)),
 }
@@ -63,7 +62,7 @@ OTHERS = {
     "draw": (marked("Construction"), ""),
 }
 """Titles of other stops, and why what is drawn is so."""
-RATES = (vel.ANGULAR_VELOCITY, acc.ANGULAR_ACCELERATION)
+RATES = (motion.ANGULAR_VELOCITY, motion.ANGULAR_ACCELERATION)
 
 
 def lessons(project: Project, index: StepIndex, known: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -182,18 +181,18 @@ class _Lesson:
         stop: dict[str, Any] = {"step": self.index.id(step), "say": protocol.sentence_of_any_angle(step)}
         rule = step.rule
         if rule in LAID:
-            laid, tail = LAID[rule], args[0] if rule is not vel.CRANK_VELOCITY else self.index.id(self.plan[str(self.plan.pole)])
+            laid, tail = LAID[rule], args[0] if rule is not motion.CRANK_VELOCITY else self.index.id(self.plan[str(self.plan.pole)])
             a, b = laid.ends
             letter = next((s.symbol for s in self.plan.segments if s.head is step and self.index.id(s.tail) == tail), "")
             return stop | {"kind": "lay", "title": tr(laid.title), "why": tr(laid.why), "tail": tail, "across": laid.across,
                            "along": [args[a], args[b]], "letter": letter, "rate": args[laid.rate], "power": laid.power,
-                           "twice": rule is acc.CORIOLIS,
+                           "twice": rule is motion.CORIOLIS,
                            "name": f"{protocol.letter_of(step.args[a])}{protocol.letter_of(step.args[b])}"}
         if rule is rules.SHIFT:
             return stop | _kind("force") | {"kind": "lay", "tail": args[0], "across": False, "along": [], "force": args[1]}
         if rule is rules.LINE_LINE:
             return stop | _kind("meet") | {"of": [self.index.id(s.tail) for s in self.plan.segments if s.head is step]}
-        if rule is vel.SIMILAR:
+        if rule is motion.SIMILAR:
             names = [protocol.letter_of(a) for a in step.args]
             return stop | _kind("similar") | {"tail": args[0], "to": args[1], "places": args[2:], "names": names}
         if rule in RATES and all(args):

@@ -20,7 +20,7 @@ from tmm_sheets.mechanism.groups.triad import NEAR_DIRECTION, NEAR_PLACE, TriadG
 from tmm_sheets.methods.flywheel.flywheel import Flywheel
 from tmm_sheets.methods.flywheel.reduced import Reduction, turning_back
 from tmm_sheets.methods.linkage.loads import DIAGRAM, PISTON, diagram
-from tmm_sheets.methods.linkage.numbering import PARTS, PARTS_OF_TURNS, SENSES
+from tmm_sheets.methods.linkage.numbering import PARTS, SENSES
 from tmm_sheets.task.schema import ForceTable, MomentTable
 
 if TYPE_CHECKING:
@@ -260,7 +260,7 @@ class UnevenCrank:
         """Angles turned to the numbered positions, or how many parts each stroke has and how many turns there are."""
         cycle = project.cycle
         turned = cycle.numbering["φ_п"] if cycle.numbering is not None else None
-        if turned is not None and turned.rule in (PARTS, PARTS_OF_TURNS):
+        if turned is not None and turned.rule in PARTS:
             _, *parts = (int(value_of(x)) for x in turned.args)
             return {"parts": parts if len(parts) > 2 else [*parts, 1]}
         return {"positions": np.asarray(cycle.turned).tolist()}

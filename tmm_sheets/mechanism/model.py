@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     # The plans that a kind constructs itself on; at run time it knows nothing of their room.
     from tmm_sheets.methods.linkage.forces import Kinetostatics as Kinetostatics
+    from tmm_sheets.methods.linkage.motion import MotionPolygon as MotionPolygon
     from tmm_sheets.methods.linkage.positions import Positions as Positions
-    from tmm_sheets.methods.linkage.velocities import MotionPolygon as MotionPolygon
 
 Motion = Literal["rotation", "translation"]
 
@@ -405,7 +405,7 @@ class Mechanism:
 
     >>> import numpy as np
     >>> from tmm_sheets.methods.linkage.positions import position_plan
-    >>> from tmm_sheets.methods.linkage.velocities import velocity_plan
+    >>> from tmm_sheets.methods.linkage.motion import velocity_plan
     >>> positions = position_plan(m, np.array([0.0, np.pi / 2, np.pi]))
     >>> positions.points["C"].value.real.round(6).tolist()
     [0.4, 0.282843, 0.2]

@@ -23,9 +23,8 @@ import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY
-from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.player import needed
-from tmm_sheets.words import marked
+from tmm_sheets.words import Remark, marked
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project

@@ -10,8 +10,7 @@ from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import MarkGroup, Part
 from tmm_sheets.drawing.marks import Drawing, PlacedFrame
 from tmm_sheets.drawing.text_layout import Crowded
-from tmm_sheets.remarks import Remark
-from tmm_sheets.words import marked, tell
+from tmm_sheets.words import Remark, marked, tell
 
 OVER = {
     "": marked('view "{title}" leaves its place by {by:.1f} mm {side}'),

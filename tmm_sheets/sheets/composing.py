@@ -23,11 +23,10 @@ from tmm_sheets.drawing.paper import A1
 from tmm_sheets.drawing.placing import place
 from tmm_sheets.drawing.text_layout import Shortened, bounds_of, text_box, text_boxes
 from tmm_sheets.drawing.title_block import block, draw_frame
-from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets import composition
 from tmm_sheets.sheets.composed import Composed, Leaving
 from tmm_sheets.sheets.views import VIEWS, Arrangement, arrangement, function
-from tmm_sheets.words import marked, of_file, tr
+from tmm_sheets.words import Remark, marked, of_file, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project

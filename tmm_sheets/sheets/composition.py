@@ -16,9 +16,8 @@ import numpy as np
 
 from tmm_sheets import kept
 from tmm_sheets.box import Box
-from tmm_sheets.construction.readable import CURVE, MAIN, POLE, TOOTH
+from tmm_sheets.construction.scale import CURVE, MAIN, POLE, TOOTH
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.answered import Answered
 from tmm_sheets.sheets.border_solver import (
     CRANK,
@@ -37,7 +36,7 @@ from tmm_sheets.sheets.border_solver import (
 from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.player import extent, fit_frame
 from tmm_sheets.sheets.views import Arrangement, ViewKind, ViewPlace, arrangement, function
-from tmm_sheets.words import marked
+from tmm_sheets.words import Remark, marked
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale

@@ -32,10 +32,9 @@ from tmm_sheets.drawing.marks import (
 )
 from tmm_sheets.drawing.text_layout import Crowded, Shortened
 from tmm_sheets.errors import CannotBuild, together
-from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.answered import Answered
 from tmm_sheets.sheets.composed import Composed, Leaving
-from tmm_sheets.words import tell
+from tmm_sheets.words import Remark, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.canvas import Canvas

@@ -62,3 +62,8 @@ def sine_motion(data, phi):
 def centre_profile(phi, s, s0, e, right=1.0):
     """Centre profile of an offset follower in the frame of the cam, in closed form."""
     return (-right * e + 1j * (s0 + s)) * np.exp(1j * right * phi)
+
+
+def at_positions(law, function):
+    """A function of the phases, such as ``Phase.dds``, at the numbered positions of a law, shape (2 parts + 2,)."""
+    return np.concatenate((function(law.rise, law.shares), function(law.fall, law.shares)))

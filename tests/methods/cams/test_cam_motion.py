@@ -9,10 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data, sine_motion
+from tests.methods.cams.cam_cases import at_positions, cam_data, flat_data, rocker_data, sine_motion
 from tmm_sheets.construction.protocol import sentences
-from tmm_sheets.construction.readable import CURVE, MAIN, POLE
-from tmm_sheets.construction.scale import Scale
+from tmm_sheets.construction.scale import CURVE, MAIN, POLE, Scale
 from tmm_sheets.methods.cams.cam_laws import LAWS, Phase, PositionFunction
 from tmm_sheets.methods.cams.cam_motion import MotionScales, motion, motion_scales
 
@@ -42,7 +41,7 @@ def printed():
 def test_diagrams_are_exact_in_the_numbered_positions(changes):
     m = drawn(cam_data(**changes))
     for steps, scale, function in ((m.dds, m.scales.dds, Phase.dds), (m.ds, m.scales.ds, Phase.ds), (m.s, m.scales.s, Phase.s)):
-        truth = m.law.at_positions(function)
+        truth = at_positions(m.law, function)
         np.testing.assert_allclose(m.measured(steps, scale), truth, rtol=0, atol=1e-12 * np.abs(truth).max())
         np.testing.assert_allclose([s.value.real for s in steps], m.scales.phi.mm(m.law.positions), rtol=1e-13)
 
@@ -128,7 +127,7 @@ def test_equal_scale_factors_have_equal_poles():
         m = motion(law, sc)
         left = sc.h1 if not m.circle else -min(s.value.real for s in m.circle.values())
         assert left + sc.phi.mm(law.fall.end) < PLACE[0]
-        np.testing.assert_allclose(m.measured(m.s, sc.s), law.at_positions(Phase.s), rtol=0, atol=1e-12 * law.stroke)
+        np.testing.assert_allclose(m.measured(m.s, sc.s), at_positions(law, Phase.s), rtol=0, atol=1e-12 * law.stroke)
 
 
 @pytest.mark.parametrize(("law", "rise", "fall", "stroke"), [("sine", 60, 75, 9), ("cosine", 100, 140, 30)])
@@ -207,7 +206,7 @@ def test_any_phases_fill_their_place(rise, dwell, fall, stroke, name):
     assert total <= PLACE[1] * (1 + 1e-9)
     assert m.plan.check() is None
     for steps, scale, function in ((m.ds, sc.ds, Phase.ds), (m.s, sc.s, Phase.s)):
-        truth = law.at_positions(function)
+        truth = at_positions(law, function)
         np.testing.assert_allclose(m.measured(steps, scale), truth, rtol=0, atol=1e-12 * np.abs(truth).max())
 
 

@@ -14,7 +14,7 @@ import pytest
 from shapely import Polygon
 
 from tests.few import few
-from tests.methods.cams.cam_cases import cam_data, rocker_data
+from tests.methods.cams.cam_cases import at_positions, cam_data, rocker_data
 from tmm_sheets.methods.cams.cam_laws import Phase
 from tmm_sheets.methods.cams.cam_profile import cam
 from tmm_sheets.methods.cams.cam_zone import zone
@@ -63,7 +63,7 @@ def test_all_translating_followers_have_their_dimensions(step):
         data = tappet(number)
         law = cam(data).law
         # The exact ordinates instead of the drawn ones, which are equal: the drawn ones take ten times longer.
-        found_zone = zone(law, data.pressure_angle, data.limit, -1.0, law.at_positions(Phase.s), law.at_positions(Phase.ds),
+        found_zone = zone(law, data.pressure_angle, data.limit, -1.0, at_positions(law, Phase.s), at_positions(law, Phase.ds),
                           data.eccentricity)
         phi = np.linspace(0, data.rise, 301)
         s, ds, t, e = law.s(phi), law.ds(phi), tan(data.pressure_angle), data.eccentricity

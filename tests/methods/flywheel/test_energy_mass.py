@@ -9,23 +9,24 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.methods.flywheel.running import speed
 from tmm_sheets.construction.step import Plan
-from tmm_sheets.methods.flywheel.energy_mass import energy_mass_plan, highest, limit, speed, touched
+from tmm_sheets.methods.flywheel.energy_mass import continuous_argmax, energy_mass_plan, limit, touched
 from tmm_sheets.methods.flywheel.works import LAY_DOWN
 
 
 @given(st.floats(0.3, 6.0), st.floats(0.2, 5.0))
 def test_highest_finds_a_smooth_hump(peak, width):
-    found = highest(lambda t: -(((t - peak) / width) ** 2), np.linspace(0, 2 * pi, 41))
+    found = continuous_argmax(lambda t: -(((t - peak) / width) ** 2), np.linspace(0, 2 * pi, 41))
     assert found == pytest.approx(peak, abs=2e-8 * width)
 
 
 def test_highest_finds_a_corner_that_is_a_sample_and_an_end():
     corner = 1.2345678901234567
     samples = np.unique(np.append(np.linspace(0, 5, 21), corner))
-    assert highest(lambda t: -np.abs(t - corner), samples) == corner
-    assert highest(lambda t: t, samples) == 5.0
-    assert highest(lambda t: -t, samples) == 0.0
+    assert continuous_argmax(lambda t: -np.abs(t - corner), samples) == corner
+    assert continuous_argmax(lambda t: t, samples) == 5.0
+    assert continuous_argmax(lambda t: -t, samples) == 0.0
 
 
 @given(st.floats(30, 200), st.floats(-150, 150), st.floats(1, 80), st.floats(0.01, 0.2))
@@ -102,5 +103,5 @@ def test_a_hump_beside_the_best_sample_is_found(top, extra):
     """Before the end of a cycle, whose last sample is as great as the first; behind one that stands twice up to rounding."""
     middle = np.pi if extra else 0.0
     samples = np.unique(np.concatenate((np.linspace(0, 2 * np.pi, 721), middle + np.array(extra))))
-    found = highest(lambda t: np.cos(t - middle - top), samples)
+    found = continuous_argmax(lambda t: np.cos(t - middle - top), samples)
     assert np.cos(found - middle - top) == pytest.approx(1, abs=1e-14)

@@ -15,6 +15,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.methods.flywheel.running import speed_of
 from tests.methods.linkage import shaper_truth as truth
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import Scale
@@ -147,7 +148,7 @@ def test_segment_is_the_difference_of_the_extremes(reduced):
 def test_delta_is_recovered_from_the_motion(shaper):
     phi = np.linspace(0, 2 * pi, 100001)
     phi = np.append(phi, [shaper.limit.phi_max, shaper.limit.phi_min])
-    omega = shaper.speed(phi)
+    omega = speed_of(shaper, phi)
     assert (omega.max() - omega.min()) / truth.OMEGA == pytest.approx(0.025, rel=1e-12)
     assert (omega.max() + omega.min()) / 2 == pytest.approx(truth.OMEGA, rel=1e-12)
 
@@ -163,7 +164,7 @@ def test_delta_is_recovered_by_integrating_the_equation_of_motion(shaper):
         return (moment - drive - slope * w * w / 2) / ((flywheel_inertia + truth.inertia(phi + truth.START)) * w)
 
     first, last = shaper.reduced.breaks
-    w = float(shaper.speed(np.array([0.0]))[0])
+    w = float(speed_of(shaper, np.array([0.0]))[0])
     start, speeds = w, [w]
     for a, b, working in ((0.0, first, False), (first, last, True), (last, 2 * pi, False)):
         n = max(int((b - a) / 0.002), 4)

@@ -11,7 +11,7 @@ import pytest
 from tests import project_files as files
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.methods.flywheel.energy_mass import STOPS, Tangents, left_by
+from tmm_sheets.methods.flywheel.energy_mass import STOPS, Tangents, residual_fluctuation
 
 PUMP = Path(__file__).parents[2] / "projects" / "pump.toml"
 R, ROD, C, OMEGA = 0.08, 0.32, 0.11, 4 * pi
@@ -127,15 +127,15 @@ def test_an_even_running(method):
 def test_limits_of_the_search():
     """Nothing varies: no unevenness; just enough to come round, and just not."""
     still = Tangents(0.0, 0.0, 0.0, 0.0)
-    assert left_by(1.0, lambda delta: still, 1.0, 0.02)[0] == 0.0
+    assert residual_fluctuation(1.0, lambda delta: still, 1.0, 0.02)[0] == 0.0
     for excess, comes in ((1.999, True), (2.001, False)):
         def of(delta, excess=excess):
             return Tangents(excess, 0.0, 0.0, 0.0)
         if comes:
-            assert left_by(1.0, of, 1.0, 0.02)[0] == pytest.approx(excess)
+            assert residual_fluctuation(1.0, of, 1.0, 0.02)[0] == pytest.approx(excess)
         else:
             with pytest.raises(CannotBuild):
-                left_by(1.0, of, 1.0, 0.02)
+                residual_fluctuation(1.0, of, 1.0, 0.02)
     assert STOPS == 2
 
 

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from tests.methods.cams.cam_cases import told
 from tests.methods.flywheel import press_truth as truth
+from tests.methods.flywheel.running import speed_of
 from tests.methods.linkage import shaper_truth as shaper
 from tests.methods.linkage.shaper_truth import Shaper
 from tests.project_files import from_file, project
@@ -214,7 +215,7 @@ def test_angular_velocity_from_its_axis(fw):
     assert (fw.omega < truth.OMEGA).any()
     assert (fw.omega > truth.OMEGA).any()
     exact = fw.running(fw.J_first)
-    real = Wittenbauer(fw.reduced, data()).speed(fw.reduced.phi, fw.J_first)
+    real = speed_of(Wittenbauer(fw.reduced, data()), fw.reduced.phi, fw.J_first)
     np.testing.assert_allclose(fw.omega - fw.omega.mean(), real - real.mean(), atol=0.1 * 0.04 * exact.mean)
 
 
@@ -223,8 +224,8 @@ def test_acceleration_from_the_equation_of_motion(fw):
     slope = np.array([float(mpmath.diff(lambda u: truth.inertia(u, mpmath), x)) for x in t])
     forces = np.array([truth.moment(x) for x in t]) + fw.M_constant
     expected = (forces - truth.OMEGA**2 / 2 * slope) / (fw.J_first + truth.inertia(t))
-    np.testing.assert_allclose(fw.acceleration(t), expected, rtol=1e-9)
-    np.testing.assert_allclose(fw.position_acceleration["ε1"].value, fw.acceleration(fw.reduced.phi), rtol=1e-12)
+    np.testing.assert_allclose(fw.acceleration_plan(t)["ε1"].value, expected, rtol=1e-9)
+    np.testing.assert_allclose(fw.position_acceleration["ε1"].value, fw.acceleration_plan(fw.reduced.phi)["ε1"].value, rtol=1e-12)
 
 
 def test_tangent_on_paper_has_the_slope_of_the_graph(fw):

@@ -8,9 +8,8 @@ from hypothesis import strategies as st
 from tests.methods.linkage import truth
 from tests.methods.linkage.mechanisms import mechanisms, value
 from tests.methods.settings import every_kind, tried
-from tmm_sheets.methods.linkage.accelerations import acceleration_plan
+from tmm_sheets.methods.linkage.motion import acceleration_plan, velocity_plan
 from tmm_sheets.methods.linkage.positions import position_plan
-from tmm_sheets.methods.linkage.velocities import velocity_plan
 
 OMEGA = -2 * np.pi * 1.2
 NAMES = ("B", "D", "S3", "S5")

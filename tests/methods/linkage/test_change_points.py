@@ -16,12 +16,11 @@ from tests.methods.linkage import truth
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import RPR, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
-from tmm_sheets.methods.linkage.accelerations import acceleration_plan
 from tmm_sheets.methods.linkage.checks import check_assembly, check_followed
 from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics, limits_of_forces
+from tmm_sheets.methods.linkage.motion import acceleration_plan, velocity_plan
 from tmm_sheets.methods.linkage.numbering import even_cycle, swing_cycle
-from tmm_sheets.methods.linkage.positions import passages, position_plan
-from tmm_sheets.methods.linkage.velocities import velocity_plan
+from tmm_sheets.methods.linkage.positions import Passages, position_plan
 from tmm_sheets.methods.linkage.zhukovsky import lever
 
 W, E1 = 10.0, 37.0
@@ -172,7 +171,7 @@ def test_angles_in_degrees_whose_cosine_is_not_exact(degrees):
 def test_lengths_that_add_up_in_decimals_only(rod, rocker, at, side):
     """0.05 + 0.12 is not 0.1 + 0.07 in doubles, it is a change point all the same; against the decimals, extrapolated."""
     m = four_bar(0.05, rod, rocker, 0.12, side, follow=True, at=at)
-    assert np.exp(1j * np.array(passages(m).angles(m.groups[0]))) == pytest.approx([np.exp(1j * at)], abs=1e-15)
+    assert np.exp(1j * np.array(Passages(m).angles(m.groups[0]))) == pytest.approx([np.exp(1j * at)], abs=1e-15)
     point = mpmath.pi * round(at / pi)
 
     def z(phi):
@@ -195,7 +194,7 @@ def test_a_real_dead_position_stays_none():
     """Where a crank turns back lines fall together as well, but velocities grow beyond all bounds."""
     m = four_bar(0.06, 0.05, 0.06, 0.12)
     limit = float(mpmath.acos((mp(0.06) ** 2 + mp(0.12) ** 2 - mp(0.11) ** 2) / (2 * mp(0.06) * mp(0.12))))
-    assert passages(m).angles(m.groups[0]) == ()
+    assert Passages(m).angles(m.groups[0]) == ()
     _, v, *_ = motion(m, [limit + 1e-12, limit - 1e-12, limit - 1e-9])
     assert np.isnan(v["C"][0])
     assert np.abs(v["C"][1]) > 1e5 * W * 0.06
@@ -215,7 +214,7 @@ def in_a_row(follow, sides=(1, 1), frame=0.1, sense=1):
 @pytest.mark.parametrize("sense", [1, -1])
 def test_two_parallelograms_in_a_row(sense):
     m = in_a_row(True, (sense, sense), sense=sense)
-    assert len(passages(m).angles(m.groups[1])) == 2
+    assert len(Passages(m).angles(m.groups[1])) == 2
     phi = np.array([k * pi + x for k in (-1, 0, 1) for x in NEAR])
     _, v, a, omega, epsilon = motion(m, phi)
     for link in "24":

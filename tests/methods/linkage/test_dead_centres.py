@@ -11,9 +11,8 @@ from tests.methods.linkage import truth
 from tests.methods.linkage.mechanisms import mechanism, value
 from tmm_sheets.mechanism.groups import RPR, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, LinkPoint, StructuralGroup
-from tmm_sheets.methods.linkage.accelerations import acceleration_plan
+from tmm_sheets.methods.linkage.motion import acceleration_plan, velocity_plan
 from tmm_sheets.methods.linkage.positions import position_plan
-from tmm_sheets.methods.linkage.velocities import velocity_plan
 
 GAPS = [10.0**-n for n in (1, 3, 6, 9, 12, 15)]
 

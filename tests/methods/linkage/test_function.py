@@ -12,8 +12,8 @@ from tmm_sheets.construction.program import rows_of
 from tmm_sheets.construction.step import value_of
 from tmm_sheets.mechanism.groups import RRR
 from tmm_sheets.mechanism.model import StructuralGroup
+from tmm_sheets.methods.linkage.motion import Watched, velocity_plan
 from tmm_sheets.methods.linkage.positions import position_plan
-from tmm_sheets.methods.linkage.velocities import Watched, velocity_plan
 from tmm_sheets.project import Project
 from tmm_sheets.resources import variants
 

@@ -13,9 +13,8 @@ from tests.methods.linkage.mechanisms import mechanisms
 from tests.methods.settings import every_kind, tried
 from tests.project_files import known
 from tmm_sheets.construction.rules import LINE_LINE
-from tmm_sheets.methods.linkage.accelerations import CORIOLIS, acceleration_plan
+from tmm_sheets.methods.linkage.motion import CORIOLIS, acceleration_plan, velocity_plan
 from tmm_sheets.methods.linkage.positions import position_plan
-from tmm_sheets.methods.linkage.velocities import velocity_plan
 from tmm_sheets.sheets.linkage.kinematics import _hinges
 
 

@@ -12,8 +12,8 @@ from tests.methods.settings import every_kind, tried
 from tmm_sheets.mechanism.groups import RPP, RPR, RRR
 from tmm_sheets.mechanism.model import Guide, LinkPoint, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import dead_positions
+from tmm_sheets.methods.linkage.motion import velocity_plan
 from tmm_sheets.methods.linkage.positions import position_plan
-from tmm_sheets.methods.linkage.velocities import velocity_plan
 
 OMEGA = -2 * np.pi * 1.2
 PIN = 0.08 * 2 * np.pi * 1.2

@@ -30,7 +30,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.step import Rule, Step, value_at
-from tmm_sheets.methods.linkage import accelerations, forces, loads, velocities, zhukovsky
+from tmm_sheets.methods.linkage import forces, loads, motion, zhukovsky
 from tmm_sheets.words import marked
 
 Again = Callable[..., Any]
@@ -247,15 +247,15 @@ def any_of(mistakes: Iterable[Hypothesis]) -> Remark:
 # --- one step --------------------------------------------------------------------------------------------------------------
 
 BACKWARDS: Mapping[Rule, tuple[Kind, str]] = {
-    accelerations.CORIOLIS: ("coriolis", "coriolis"), accelerations.NORMAL: ("normal", "normal"),
-    accelerations.TANGENTIAL: ("sense", "tangential"),
+    motion.CORIOLIS: ("coriolis", "coriolis"), motion.NORMAL: ("normal", "normal"),
+    motion.TANGENTIAL: ("sense", "tangential"),
 }
 """Vectors laid off from a point of their plan."""
 FACTORS = (0.1, 0.2, 0.5, 2.0, 5.0, 10.0)
 """What scale factors differ by that are taken for each other."""
 OTHER_SIGN: Mapping[Rule, tuple[Kind, str]] = {
-    velocities.ANGULAR_VELOCITY: ("sense", "turning"), accelerations.ANGULAR_ACCELERATION: ("sense", "turning"),
-    velocities.CRANK_VELOCITY: ("sense", "crank velocity"),
+    motion.ANGULAR_VELOCITY: ("sense", "turning"), motion.ANGULAR_ACCELERATION: ("sense", "turning"),
+    motion.CRANK_VELOCITY: ("sense", "crank velocity"),
     forces.INERTIA: ("inertia", "inertia"), forces.COUPLE: ("inertia", "inertia moment"),
     forces.WEIGHT: ("force", "force"), loads.FORCE: ("force", "force"),
     forces.TANGENTIAL: ("force", "component"),
@@ -338,7 +338,7 @@ def _moments(step: Step, k: int) -> Iterator[Hypothesis]:
 
 # --- a number of a neighbour -----------------------------------------------------------------------------------------------
 
-TURNING = (velocities.ANGULAR_VELOCITY, accelerations.ANGULAR_ACCELERATION)
+TURNING = (motion.ANGULAR_VELOCITY, motion.ANGULAR_ACCELERATION)
 COMPUTED = (*TURNING, forces.INERTIA, forces.COUPLE, loads.FORCE, loads.MOMENT)
 
 

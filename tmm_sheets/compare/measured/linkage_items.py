@@ -41,9 +41,9 @@ from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.rules import LINE_LINE
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.methods.linkage import accelerations
+from tmm_sheets.methods.linkage import motion
 from tmm_sheets.methods.linkage.forces import MOMENTS, OPPOSITE, TANGENTIAL, WEIGHT
-from tmm_sheets.methods.linkage.velocities import SAME, SIMILAR
+from tmm_sheets.methods.linkage.motion import SAME, SIMILAR
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ def _segments(plan: Plan, scales: Mapping[str, Scale], k: int, between: str = ""
 def _name(vector: Segment) -> str:
     """Name of a vector of motion in every language: its symbol, with the index that Coriolis' acceleration has in Russian."""
     name = re.sub(r"[\u0305{}]", "", vector.symbol)
-    return f"{name.partition('^')[0]}^к" if vector.head.rule is accelerations.CORIOLIS else name
+    return f"{name.partition('^')[0]}^к" if vector.head.rule is motion.CORIOLIS else name
 
 
 def _motion_results(project: Project, found: Measurables, of_velocities: list[int]) -> None:
@@ -144,7 +144,7 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
             continue
         mu = found.scales[key].mu
         letters = {s.head.name: re.sub(r"[\u0305{}]", "", s.symbol) for s in of.plan.segments
-                   if s.head.rule is accelerations.CORIOLIS}  # its index is a letter of the language
+                   if s.head.rule is motion.CORIOLIS}  # its index is a letter of the language
         for k in positions:
             label = study.labels[k]
             vectors = [(_name(s), s.tail, s.head) for s in of.plan.segments]
@@ -156,7 +156,7 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
                                      "result", drawn.value * mu, terms, key, mu, main=False))
                 found.check(f"{RESULTS}/{label}/{name}", [f"{of.plan.name}/{label}/{tail.name}{head.name}"], float)
             for link, step in turning.items():
-                alike = step.rule in (SAME, accelerations.SAME) and link != project.mechanism.crank.link
+                alike = step.rule in (SAME, motion.SAME_ACCELERATION) and link != project.mechanism.crank.link
                 if link != project.mechanism.frame and not alike:
                     name = f"{greek}{link}"
                     turning_so = size(title, f"{RESULTS}/{label}/{name}", label, name, angular, k, step, by=step)

@@ -15,7 +15,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.step import Plan
 from tmm_sheets.lab.bench.records import Bench
-from tmm_sheets.methods.flywheel.energy_mass import highest
+from tmm_sheets.methods.flywheel.energy_mass import continuous_argmax
 from tmm_sheets.methods.flywheel.flywheel import Flywheel
 from tmm_sheets.methods.flywheel.wheel_methods import Mertsalov, Wittenbauer
 from tmm_sheets.methods.integration import Quadrature, integrate, ordinates, smooth
@@ -98,7 +98,7 @@ def _integration(bench: Bench) -> None:
 
 
 def _span(curve: Callable[[Floats], Floats], samples: Floats) -> float:
-    high, low = (float(curve(np.array([highest(lambda t, s=s: s * curve(t), samples)]))[0])  # type: ignore[misc]
+    high, low = (float(curve(np.array([continuous_argmax(lambda t, s=s: s * curve(t), samples)]))[0])  # type: ignore[misc]
                  for s in (1.0, -1.0))
     return high - low
 

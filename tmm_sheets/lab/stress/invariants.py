@@ -26,10 +26,9 @@ from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, TRIAD, GroupKin
 from tmm_sheets.mechanism.groups.contexts import Load
 from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
-from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics, limits_of_forces
+from tmm_sheets.methods.linkage.motion import Accelerations, Velocities, acceleration_plan, velocity_plan
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
-from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
 from tmm_sheets.methods.linkage.zhukovsky import lever
 
 Residual = tuple[str, Any]

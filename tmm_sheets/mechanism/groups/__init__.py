@@ -1,8 +1,7 @@
 """Kinds of Assur groups: five of class II, order 2, and one of class III, order 3; a new kind is a module here and a line below."""
 
-from tmm_sheets.mechanism.groups.hinged import PRP, RRP, RRR
-from tmm_sheets.mechanism.groups.slotted import RPP, RPR
 from tmm_sheets.mechanism.groups.triad import TRIAD
+from tmm_sheets.mechanism.groups.two_links import PRP, RPP, RPR, RRP, RRR
 from tmm_sheets.mechanism.model import GroupKind
 
 KINDS: dict[int, GroupKind] = {kind.number: kind for kind in (RRR, RRP, RPR, PRP, RPP, TRIAD)}

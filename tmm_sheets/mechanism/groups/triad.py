@@ -127,14 +127,7 @@ BY_MOMENTS = Rule("component along a normal from moments",
                   lambda a, v: rules.arm(a[1], a[2], a[3]), unit="N")
 
 
-def _along_slot(u: Any, *forces: Any) -> Any:
-    total: Any = 0j
-    for f in forces:
-        total = total + f
-    return -(total * np.conj(u)).real * u
-
-
-ALONG_SLOT = Rule("component along a slot", _along_slot, ("direction",), "force",
+ALONG_SLOT = Rule("component along a slot", lambda u, *forces: -(sum(forces, 0j) * np.conj(u)).real * u, ("direction",), "force",
                   marked("From the sum of projections on the slot find the component {name} = {value}."), unit="N")
 
 
@@ -278,7 +271,7 @@ class TriadKind(GroupKind):
         u = pos.directions[leg.link]
         if leg.form == "RR":
             return u
-        return pos.plan.once(f"⟂{leg.guide or 'dir ' + leg.link}", rules.TURN, u)
+        return pos.plan.add_once(f"⟂{leg.guide or 'dir ' + leg.link}", rules.TURN, u)
 
     # --- velocities and accelerations -------------------------------------------------------------------------------
 

@@ -76,11 +76,10 @@ def _of_phase(symbol: str) -> tuple[Rule, Rule, Rule]:
         Rule(f"displacement in a phase{angular}", displaced, (s, travel, "number"), s,
              marked("Displacement in this phase {name} = {0} + {1}·{2} = {value}."), unit="rad" if angular else "", source=SOURCE),
         Rule(f"first derivative in a phase{angular}", first_derivative, (travel, "angle", "number"), ds,
-             marked("First derivative {name} = h/φ·f', where h is the travel of this phase with its sign and φ its angle in "
-                    "radians: {value}."),
+             marked("First derivative: {formula}."),
              unit="1" if angular else "", source=SOURCE),
         Rule(f"second derivative in a phase{angular}", second_derivative, (travel, "angle", "number"), dds,
-             marked("Second derivative {name} = h/φ²·f'' = {value}."), unit="1" if angular else "", source=SOURCE),
+             marked("Second derivative: {formula}."), unit="1" if angular else "", source=SOURCE),
     )
 
 

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
-from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -14,11 +11,10 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import Floats, Points, Reals, Signs, primitive
-from tmm_sheets.construction.step import Helper, Plan, Reading, Rule, Step
-from tmm_sheets.construction.tables import StepTable, record
+from tmm_sheets.construction.step import Helper, Plan, Reading, Rule, Step, StepTable, record
 from tmm_sheets.methods.cams.cam_displacement import Displacement, ExactMotion, in_phase
 from tmm_sheets.methods.cams.cam_laws import Phase
-from tmm_sheets.methods.cams.cam_zone import ALONG_ROCKER, TURNED, Cones, Zone, found_share, greatest
+from tmm_sheets.methods.cams.cam_zone import ALONG_ROCKER, TURNED, Cones, Zone, extreme, found_share, pieces_of
 from tmm_sheets.words import marked, tr
 
 LAY_OFF_FROM = Rule(
@@ -270,8 +266,6 @@ class Spring:
     """What turns a displacement of the law into a way: 1, or the arm of a rocker, m."""
     largest_inertia = Reading("plan", "Q_max")
     """Largest force of inertia that separates follower and cam, N."""
-    f_max = Reading("plan", "F_max")
-    """Largest force, N."""
     f_0 = Reading("plan", "F_0")
     """Force in the lowest position, N."""
     way = Reading("plan", "s")
@@ -341,15 +335,8 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
     given = {"mass": mass[0], "arm": mass[-1], "length": length, "speed": speed, "factor": factor, "preload": preload,
              "stroke": law.stroke}
     record(plan, "m l ω", {} if len(mass) == 1 else OF_ROCKER, SPRING, given=given)
-    pieces = [(p, a + 1e-12, b - 1e-12) for p in (law.rise, law.fall) for a, b in pairwise((0.0, *p.law.jumps, 1.0))]
-    def extreme(f: Callable[[Floats, Phase], Any]) -> tuple[float, float, Phase]:
-        """Greatest value of a function of share and phase, its share and phase."""
-        def of(p: Phase) -> Callable[[Floats], Any]:
-            return lambda x: f(x, p)
-
-        return max(((*greatest(of(p), (513, 33, 33, 33, 33), (a, b)), p) for p, a, b in pieces), key=itemgetter(0))
-
-    _, x, p = extreme(lambda x, p: -p.dds(x))
+    pieces, counts = [*pieces_of((law.rise, law.fall), 1e-12)], (513, 33, 33, 33, 33)
+    _, x, p = extreme(lambda x, p: -p.dds(x), pieces, counts)
     share = found_share(plan, exact.phases, p, x, "Q", tr("{symbol}'' is least").format(symbol=law.symbol))
     (dds,) = in_phase(plan, law, exact.phases, p, share, "Q", (2,))
     record(plan, "Q_max F_max F_0 s c", SPRING, given={**given, "dds": dds})
@@ -360,7 +347,7 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
         inertia = -unit * p.dds(x)
         return np.asarray(np.divide(force, inertia, out=np.full_like(force, np.inf), where=inertia > 1e-12 * biggest))
 
-    _, x, p = extreme(lambda x, p: -ratio(x, p))
+    _, x, p = extreme(lambda x, p: -ratio(x, p), pieces, counts)
     share = found_share(plan, exact.phases, p, x, "k", tr("the ratio F/Q where {symbol}'' < 0 is least").format(symbol=law.symbol))
     s, dds = in_phase(plan, law, exact.phases, p, share, "k", (0, 2))
     record(plan, "k_min k_F", SPRING, given={**given, "displacement": s, "dds": dds})
@@ -374,7 +361,7 @@ BACK = Rule("lay off backwards", lambda b, u, distance: b + u * -distance, ("poi
             marked("From {0} along the line of the follower lay off the constant distance {2} between the rollers: point {name}."),
             lambda a, v: (Helper("line", a[0], v),))
 DISTANCE = Rule("distance of the rollers", lambda s0, stroke: 2 * s0 + stroke, ("length", "length"), "length",
-                marked("Distance between the rollers {name} = 2·S_0 + S_max = {value}."), source=SOURCE)
+                marked("Distance between the rollers: {formula}."), source=SOURCE)
 
 
 def _spread(pivot: Points, apex: Any, swing: Any) -> Any:

@@ -250,13 +250,8 @@ def _pieces(kind: type[_Accelerations | _Spline], x: tuple[float, ...], y: tuple
 
 def _of_nodes(name: str, title: str, form: Function, nodes: tuple[Given, ...], peak: float, jumps: tuple[float, ...] = ()) -> Law:
     """Law of a given diagram; ``form`` is its primitive, which takes the order of the derivative last."""
-    s, ds, dds = (partial(_of_order, form, float(order)) for order in range(3))
+    s, ds, dds = (partial(form, order=float(order)) for order in range(3))
     return Law(name, title, (s, ds, dds), peak=peak, jumps=jumps, even=False, nodes=nodes)
-
-
-def _of_order(form: Function, order: float, x: Reals, shares: Reals, ordinates: Any) -> Reals:
-    found: Reals = form(x, shares, ordinates, order)
-    return found
 
 
 def _nodes(key: str, x: Sequence[float], y: Sequence[float]) -> tuple[Given, ...]:
@@ -469,10 +464,6 @@ class PositionFunction(Motion):
     def positions(self) -> Floats:
         """Cam angles of the numbered positions, rad, shape (2 parts + 2,)."""
         return np.concatenate((self.rise.phi(self.shares), self.fall.phi(self.shares)))
-
-    def at_positions(self, function: Callable[[Phase, Any], Any]) -> Floats:
-        """A function of the phases, such as ``Phase.dds``, at the numbered positions, shape (2 parts + 2,)."""
-        return np.concatenate((function(self.rise, self.shares), function(self.fall, self.shares)))
 
     def divided(self, parts: int) -> Floats:
         """Cam angles of a whole turn, each phase in equal parts, 0 and 2 pi included, rad.

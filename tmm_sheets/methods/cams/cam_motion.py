@@ -6,12 +6,10 @@ Source: manual 000, section 7.1 (amplitudes, auxiliary circle of the law, poles,
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import pairwise
 from math import degrees, radians
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,8 +17,7 @@ import numpy.typing as npt
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.expression import Complex
-from tmm_sheets.construction.readable import CURVE, MAIN, POLE
-from tmm_sheets.construction.scale import Scale, handy
+from tmm_sheets.construction.scale import CURVE, MAIN, POLE, Scale, handy
 from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step
 from tmm_sheets.methods.cams.cam_displacement import KINDS, SOURCE, Displacement, ExactMotion, names, row
 from tmm_sheets.methods.cams.cam_laws import Law, Phase, PositionFunction
@@ -123,7 +120,7 @@ class MotionScales:
 def motion_scales(law: PositionFunction, width: float, height: float, equal: bool = False) -> MotionScales:
     """Handy scale factors with which the three diagrams, one under another, fill ``width`` x ``height`` mm.
 
-    Of all that fit those with which poles and curves are as large as they have to be (:mod:`tmm_sheets.construction.readable`), or
+    Of all that fit those with which poles and curves are as large as they have to be (:mod:`tmm_sheets.construction.scale`), or
     least below; of these those with which all three curves are high, and long. The pole of S'' and the auxiliary circle of the law
     share what the phases leave at their left. With ``equal`` all three diagrams have one scale factor: both pole distances are
     1/mu_phi (manual 000, 7 ex. 3), unless its auxiliary circle would leave much of the height bare, or a curve is too low.
@@ -361,16 +358,12 @@ def _other_side(plan: Plan, numbers: Plan, exact: ExactMotion, k: int, point: St
             plan.add(name, JUMP, x, height)
 
 
+@cache
 def _division(law: Law) -> Rule:
     """Rule for the angles at which the points of the auxiliary circle stand as high as the law's diagram."""
     divided = law.division
     assert divided is not None
-    return _division_rule(law.name, divided)
-
-
-@cache
-def _division_rule(name: str, divided: Callable[[Any], Any]) -> Rule:
-    return Rule(f"division of the auxiliary circle, {name} law", lambda x, k, sense: sense * divided(rules.take(x, k)),
+    return Rule(f"division of the auxiliary circle, {law.name} law", lambda x, k, sense: sense * divided(rules.take(x, k)),
                 ("number", "number", "number"), "angle",
                 marked("The auxiliary circle is divided into equal parts: angle {name} = {value}."),
                 unit="rad", source=SOURCE)

@@ -19,8 +19,7 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import Floats, Points, Reals, primitive
-from tmm_sheets.construction.step import Given, GivenNumber, Helper, Plan, Reading, Rule, Step, value_of
-from tmm_sheets.construction.tables import planned
+from tmm_sheets.construction.step import Given, GivenNumber, Helper, Plan, Reading, Rule, Step, planned, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams import cam_inversion, cam_zone
 from tmm_sheets.methods.cams.cam_displacement import Displacement, ExactMotion, in_phase
@@ -329,10 +328,18 @@ class Cam(ABC):
 
 @dataclass(frozen=True, eq=False)
 class RollerCam(Cam):
-    """A cam whose follower carries a roller."""
+    """A cam whose follower carries a roller.
+
+    A kind of follower is data: ``DIMENSIONS`` are its steps in the zone by the keys of the results. ``APART`` is what keeps the
+    rollers of two discs apart: its key, its step, the rule that makes it, and of which steps of the zone and of the stroke.
+    ``BENT`` is the rule of its radius of curvature, the curvature itself, and of which steps of the zone they are made beside the
+    motion; those of a rocker also of the sense of its rise. ``INVERTED`` records its inversion.
+    """
 
     DIMENSIONS: ClassVar[dict[str, str]]
-    APART: ClassVar[str]
+    APART: ClassVar[tuple[str, str, Rule, str]]
+    BENT: ClassVar[tuple[Rule, Callable[..., Any], str]]
+    INVERTED: ClassVar[Callable[[Plan, Zone, Displacement], Inversion]]
 
     @property
     @abstractmethod
@@ -352,7 +359,7 @@ class RollerCam(Cam):
     @cached_property
     def steepest(self) -> Plan | None:
         """Greatest pressure angles where the radius is given and they follow; None where the permitted one gives the radius."""
-        return None if self.data.base_radius is None else cam_zone.steepest(self.zone)
+        return None if self.data.base_radius is None else cam_zone.max_pressure_angles(self.zone)
 
     def _dimensions(self) -> dict[str, Any]:
         z = self.zone
@@ -361,18 +368,10 @@ class RollerCam(Cam):
         found |= {"r_roller": self.choice["r_p"], "rho_min": self.curvature["ρ_min"]}
         if self.least is not None:
             found["least"] = {key: self.least[name] for key, name in self.DIMENSIONS.items()}
-        return found | self._found_angles() | ({self.APART: self.apart} if self.apart else {})
-
-    def _found_angles(self) -> dict[str, Any]:
-        """What they are and where, for the results."""
-        if self.steepest is None:
-            return {}
-        return {"steepest": {phase: {"phi": self.steepest[f"φ_α{k}"], "pressure_angle": self.steepest[f"α_{k}"]}
-                             for k, phase in enumerate(("rise", "fall"), 1)}}
-
-    @abstractmethod
-    def _bending(self, second: bool) -> tuple[Rule, Callable[..., Any], tuple[Any, ...]]:
-        """Rule for the radius of curvature of a centre profile, the curvature itself, and what both take besides the motion."""
+        if self.steepest is not None:
+            found["steepest"] = {phase: {"phi": self.steepest[f"φ_α{k}"], "pressure_angle": self.steepest[f"α_{k}"]}
+                                 for k, phase in enumerate(("rise", "fall"), 1)}
+        return found | ({self.APART[0]: self.apart} if self.apart else {})
 
     @property
     def apart(self) -> Step | None:
@@ -385,13 +384,12 @@ class RollerCam(Cam):
         if self.data.closure != "geometric":
             return None
         plan = Plan("cam-discs", tr("Two discs"), "m")
-        self._keep_apart(plan)
+        _, name, rule, of = self.APART
+        plan.add(name, rule, *(self.zone.plan[step] for step in of.split()), self.law.stroke)
         return plan
 
-    def _keep_apart(self, plan: Plan) -> Step:
-        raise NotImplementedError
-
-    def _with_discs(self, inv: Inversion) -> Inversion:
+    def _invert(self, plan: Plan, at: Displacement) -> Inversion:
+        inv = type(self).INVERTED(plan, self.zone, at)
         if self.apart is not None:
             second_disc(inv, self.apart, self.zone.cones)
         return inv
@@ -431,7 +429,10 @@ class RollerCam(Cam):
         return self._curvature[1][0]
 
     def _sharpest(self, plan: Plan, second: bool) -> Sharpest:
-        rule, curvature, of = self._bending(second)
+        rule, curvature, names = self.BENT
+        z = self.zone
+        of = (*(z.plan[name] for name in names.split()), *((z.cones.turn,) if z.cones.pivot is not None else ()), self.right,
+              self.apart if second else 0.0)
         known = [value_of(a) for a in of]
         best: tuple[float, Phase, float, float, float] = (float("inf"), self.law.rise, 0.0, 0.0, 0.0)
         for p in self.law.phases:
@@ -580,7 +581,9 @@ class RollerCam(Cam):
 class TappetCam(RollerCam):
     """A cam with a translating roller follower (толкатель)."""
 
-    DIMENSIONS, APART = {"r0": "r_0", "e": "e", "s0": "S_0"}, "roller_distance"
+    DIMENSIONS, APART = {"r0": "r_0", "e": "e", "s0": "S_0"}, ("roller_distance", "L", DISTANCE, "S_0")
+    BENT = TAPPET_RADIUS, tappet_curvature, "S_0 e"
+    INVERTED = cam_inversion.translating
 
     @cached_property
     def zone(self) -> Zone:
@@ -589,22 +592,14 @@ class TappetCam(RollerCam):
         return cam_zone.zone(self.law, self.alpha, self.data.limit, self.right, at.s, at.ds, self.given("eccentricity"),
                              self.data.centre, self.exact, self.given("base_radius"))
 
-    def _keep_apart(self, plan: Plan) -> Step:
-        return plan.add("L", DISTANCE, self.zone.plan["S_0"], self.law.stroke)
-
-    def _invert(self, plan: Plan, at: Displacement) -> Inversion:
-        return self._with_discs(cam_inversion.translating(plan, self.zone, at))
-
-    def _bending(self, second: bool) -> tuple[Rule, Callable[..., Any], tuple[Any, ...]]:
-        of = (self.zone.plan["S_0"], self.zone.plan["e"], self.right, self.apart if second else 0.0)
-        return TAPPET_RADIUS, tappet_curvature, of
-
 
 @dataclass(frozen=True, eq=False)
 class RockerCam(RollerCam):
     """A cam with an oscillating roller follower (коромысло)."""
 
-    DIMENSIONS, APART = {"r0": "r_0", "l0": "l_0"}, "arm_angle"
+    DIMENSIONS, APART = {"r0": "r_0", "l0": "l_0"}, ("arm_angle", "ψ_12", SPREAD, "A O")
+    BENT = ROCKER_RADIUS, rocker_curvature, "A O"
+    INVERTED = cam_inversion.rocker
 
     @cached_property
     def zone(self) -> Zone:
@@ -617,17 +612,6 @@ class RockerCam(RollerCam):
     def arm(self) -> float:
         """Length of the rocker, m."""
         return self.given("arm") or 0.0
-
-    def _keep_apart(self, plan: Plan) -> Step:
-        return plan.add("ψ_12", SPREAD, self.zone.plan["A"], self.zone.plan["O"], self.law.stroke)
-
-    def _invert(self, plan: Plan, at: Displacement) -> Inversion:
-        return self._with_discs(cam_inversion.rocker(plan, self.zone, at))
-
-    def _bending(self, second: bool) -> tuple[Rule, Callable[..., Any], tuple[Any, ...]]:
-        z = self.zone
-        of = (z.plan["A"], z.plan["O"], z.cones.turn, self.right, self.apart if second else 0.0)
-        return ROCKER_RADIUS, rocker_curvature, of
 
 @dataclass(frozen=True, eq=False)
 class FlatCam(Cam):

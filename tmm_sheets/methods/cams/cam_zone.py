@@ -10,7 +10,7 @@ velocity of B, its axis points against that velocity and its half angle is the p
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
@@ -22,8 +22,7 @@ import numpy as np
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import Complex, Directions, Floats, Points, Reals, Signs, primitive
-from tmm_sheets.construction.step import Given, Helper, Plan, Reading, Rule, Step
-from tmm_sheets.construction.tables import StepTable, record
+from tmm_sheets.construction.step import Given, Helper, Plan, Reading, Rule, Step, StepTable, record
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams.cam_displacement import (
     AT_SHARE,
@@ -78,6 +77,17 @@ def greatest(f: Callable[[Any], Any], counts: Iterable[int], ends: tuple[float, 
         k = int(np.argmax(y))
         ends = float(x[max(k - 1, 0)]), float(x[min(k + 1, n - 1)])
     return float(y[k]), float(x[k])
+
+
+def pieces_of(phases: Iterable[Phase], inside: float) -> Iterator[tuple[Phase, float, float]]:
+    """Smooth pieces of some phases, from share to share, each read a little ``inside`` its borders."""
+    return ((p, a + inside, b - inside) for p in phases for a, b in pairwise((0.0, *p.law.jumps, 1.0)))
+
+
+def extreme(f: Callable[[Any, Phase], Any], pieces: Iterable[tuple[Phase, float, float]],
+            counts: Iterable[int]) -> tuple[float, float, Phase]:
+    """Greatest value of a function of share and phase in some pieces, its share and phase; ``counts`` as in :func:`greatest`."""
+    return max(((*greatest(lambda x, p=p: f(x, p), counts, (a, b)), p) for p, a, b in pieces), key=itemgetter(0))  # type: ignore[misc]
 
 
 # --- cones ------------------------------------------------------------------------------------------------------------
@@ -296,7 +306,7 @@ FIRST = {symbol: tuple(
 ALONG_ROCKER = Rule("analogue on the rocker", lambda sign, arm, dpsi: sign * arm * dpsi, ("number", "length", "number"), "ordinate",
                     marked("Segment {name} = AB·ψ' = {value}."), source=SOURCE)
 LOWEST_SUM = Rule("lowest sum", lambda s, dds: s + dds, ("ordinate", "ordinate"), "ordinate",
-                  marked("Least (negative) ordinate of the graph {name} = {0} + {1} = {value}."))
+                  marked("Least (negative) ordinate of the graph: {formula}."))
 
 
 @primitive("rounded up to a millimetre", "real")
@@ -397,7 +407,7 @@ PLATE: StepTable = {
             marked("To the radius {0} add the margin Δr = {1}: {name} = {value}."))),
     "ρ_min": ("r_0 lowest", "",
         Rule("least radius of curvature", lambda radius, total: radius + total, ("length", "ordinate"), "length",
-            marked("Least radius of curvature of the profile {name} = r_0 + (S + S'')_min = {value}."), source=SOURCE)),
+            marked("Least radius of curvature of the profile: {formula}."), source=SOURCE)),
 }
 """The cam under a flat follower by the least sum S + S''."""
 
@@ -679,7 +689,7 @@ PRESSURE = Rule("pressure angle at a place", lambda tip, o, up, right: -right * 
                 source=SOURCE)
 
 
-def steepest(z: Zone) -> Plan:
+def max_pressure_angles(z: Zone) -> Plan:
     """Greatest pressure angles ``α_1`` of the rise and ``α_2`` of the fall, rad, at the cam angles ``φ_α1`` and ``φ_α2``."""
     plan = Plan("cam-steepest", tr("Greatest pressure angles"), "m")
     law, apex = z.exact.law, complex(z.apex.value)
@@ -760,16 +770,6 @@ class Plate:
     """Reach of the plate to the side of the contact in the fall, m."""
 
 
-def lowest_sum(law: PositionFunction) -> tuple[float, Phase, float]:
-    """Least S + S'' over a turn, m, with the phase and the share where it is; both values of S'' count where it jumps."""
-    def fallen(x: Floats, p: Phase) -> Any:
-        return -(p.s(x) + p.dds(x))
-
-    most, x, phase = max(((*greatest(partial(fallen, p=p), (257, 33, 33, 33, 33), (a + 1e-14, b - 1e-14)), p)
-                          for p in law.phases for a, b in pairwise((0.0, *p.law.jumps, 1.0))), key=itemgetter(0))
-    return -most, phase, x
-
-
 def plate(law: PositionFunction, s: Any, dds: Any, base_radius: float | None, exact: ExactMotion | None = None) -> Plate:
     """Dimensions of the cam and the plate; ``s`` and ``dds`` are the ordinates of the numbered positions, m.
 
@@ -785,7 +785,8 @@ def plate(law: PositionFunction, s: Any, dds: Any, base_radius: float | None, ex
     place = Plan("cam-plate-places", tr("Least ordinate of S + S'' and greatest ones of S'"), "m")
     plan = Plan("cam-plate", tr("Main dimensions of the cam"), "m", law.labels)
     sums = plan.add("S+S''", SUM, s, dds)
-    _, phase, x = lowest_sum(law)
+    # Both values of S'' count where it jumps.
+    _, x, phase = extreme(lambda x, p: -(p.s(x) + p.dds(x)), pieces_of(law.phases, 1e-14), (257, 33, 33, 33, 33))
     at = found_share(place, exact.phases, phase, x, "min", tr("the ordinate of S + S'' is least"))
     lowest = place.add("(S+S'')_min", LOWEST_SUM, *in_phase(place, law, exact.phases, phase, at, "min", (0, 2)))
     given = {"lowest": lowest, "stroke": law.stroke}

@@ -14,8 +14,7 @@ import numpy as np
 
 from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.expression import Floats
-from tmm_sheets.construction.readable import CURVE, MAIN
-from tmm_sheets.construction.scale import Scale, coarser, finer, handy, plain, reach
+from tmm_sheets.construction.scale import CURVE, MAIN, Scale, coarser, finer, handy, plain, reach
 from tmm_sheets.construction.step import Step, named
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.integration import Quadrature

@@ -30,7 +30,7 @@ STOPS = 2.0
 """Coefficient of non-uniformity at which the slowest is at rest."""
 
 
-def highest(f: Callable[[Floats], Floats], samples: Floats) -> float:
+def continuous_argmax(f: Callable[[Floats], Floats], samples: Floats) -> float:
     """Argument of the largest value of a continuous function between the first and the last of the ``samples``.
 
     The samples must separate the humps; corners of ``f`` (where a force begins or ends) must be samples. The bracket
@@ -73,7 +73,7 @@ def touched(curve: Curve, angle: float, side: int, samples: Floats) -> float:
         p = curve(t)
         return np.asarray(side * (np.imag(p) - slope * np.real(p)))
 
-    return highest(height, samples)
+    return continuous_argmax(height, samples)
 
 
 SEGMENT = Rule("segment of the energy axis", lambda a, b: np.imag(a) - np.imag(b), ("point", "point"), "ordinate",
@@ -183,7 +183,7 @@ def tangents(excess: Curve, inertia: Curve, samples: Floats, omega: float, delta
         def height(t: Floats, sign: float = sign, half_square: float = half_square) -> Floats:
             return np.asarray(sign * (excess(t) - half_square * inertia(t)))
 
-        contact.append(highest(height, samples))
+        contact.append(continuous_argmax(height, samples))
         at = np.array(contact[-1:])
         segment += float(height(at)[0])
         # Contacts that shift along the curve change nothing to first order.
@@ -191,7 +191,7 @@ def tangents(excess: Curve, inertia: Curve, samples: Floats, omega: float, delta
     return Tangents(segment, slope, *contact)
 
 
-def left_by(held: float, of: Callable[[float], Tangents], omega: float, start: float) -> tuple[float, Tangents]:
+def residual_fluctuation(held: float, of: Callable[[float], Tangents], omega: float, start: float) -> tuple[float, Tangents]:
     """Coefficient of non-uniformity that a flywheel leaves: its tangents cut off ab mu_E = delta omega^2 J; and they.
 
     The tangents meet over the flywheel's moment of inertia ``held``, kg m2, laid off to the left of the energy axis. The segment
@@ -247,7 +247,8 @@ def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: f
         def of(delta: float, excess: Curve = excess) -> Tangents:
             return tangents(excess, lambda t: j if t is samples else inertia(t), samples, omega, delta)
 
-        uneven, found = (delta, of(delta)) if delta is not None else left_by(held, of, omega, result.delta if result else START)
+        start = result.delta if result else START
+        uneven, found = (delta, of(delta)) if delta is not None else residual_fluctuation(held, of, omega, start)
         segment = found.segment
         error = abs(segment - result.segment) / (abs(segment) or 1.0) if result else np.inf
         result = ConvergedWheel(segment, held if delta is None else segment / (delta * omega**2), error, found.phi_max,
@@ -308,21 +309,6 @@ def limit_segment(plan: Plan, found: ConvergedWheel, borders: Floats, at: Callab
     if delta is None:
         return plan.add("ab·μ_E", EVEN_SEGMENT_LIMIT, *args, *j, omega, say=say)
     return plan.add("ab·μ_E", SEGMENT_LIMIT, *args, *j, omega, delta, say=say)
-
-
-def speed(moment: Curve, inertia: Curve, borders: Floats, flywheel: float, fastest: tuple[float, float],
-          phi: Floats) -> Floats:
-    """Angular velocity over the angle with that flywheel, from the energy integral, rad/s.
-
-    ``fastest`` is an angle and the angular velocity there; the constant moment balances the cycle.
-    """
-    work = Quadrature(moment, borders, 8)
-    mean = work.total / (borders[-1] - borders[0])
-    at = np.concatenate(([fastest[0]], np.asarray(phi, dtype=float)))
-    excess = work(at) - mean * (at - borders[0])
-    mass = flywheel + np.asarray(inertia(at))
-    energy = mass[0] * fastest[1] ** 2 / 2 + excess[1:] - excess[0]
-    return np.asarray(np.sqrt(2 * energy / mass[1:]))
 
 
 @dataclass(frozen=True)
@@ -388,7 +374,7 @@ def steady(energy: Energy, first: float, omega: float) -> Running:
     at = np.zeros(2)
     for _ in range(3):
         before = level
-        at = np.array([highest(lambda phi, sign=sign, level=level: sign * square(phi, level), samples)  # type: ignore[misc]
+        at = np.array([continuous_argmax(lambda phi, sign=sign, level=level: sign * square(phi, level), samples)  # type: ignore[misc]
                        for sign in (1, -1)])
         excess, mass = energy(at)
         mass = first + mass

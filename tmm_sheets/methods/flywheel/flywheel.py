@@ -17,10 +17,9 @@ import numpy as np
 
 from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.rules import GIVEN_INERTIA
-from tmm_sheets.construction.step import Given, Plan, Reading, Reported, Rule, Step, named
-from tmm_sheets.construction.tables import StepTable, planned, record
+from tmm_sheets.construction.step import Given, Plan, Reading, Reported, Rule, Step, StepTable, named, planned, record
 from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace, FlywheelScales
-from tmm_sheets.methods.flywheel.energy_mass import STOPS, ConvergedWheel, Energy, Running, speed, steady, too_light
+from tmm_sheets.methods.flywheel.energy_mass import STOPS, ConvergedWheel, Energy, Running, steady, too_light
 from tmm_sheets.methods.flywheel.wheel import STEEL, MotorCheck, RimWheel, motor_check, wheel
 from tmm_sheets.methods.flywheel.works import DIFFERENCE, INERTIA_AT, MOMENT_AT, SLOPE_AT, Works
 from tmm_sheets.words import marked, tell, tr
@@ -41,37 +40,14 @@ OF_EXCESS = Rule("moment of inertia from the excess of energy", lambda excess, d
                  source="000, 5.6")
 TOGETHER = Rule("moments of inertia together", lambda a, b: a + b, ("number", "number"), "number",
                 "", unit="kg*m2")
-DELTA_OF_SEGMENT = Rule("coefficient of non-uniformity from the segment", lambda ab, mu, j, omega: ab * mu / (j * omega**2),
-                        ("number",) * 4, "number",
-                        "",
-                        source="000, 5.6")
-DELTA_OF_EXCESS = Rule("coefficient of non-uniformity from the excess of energy", lambda excess, j, omega: excess / (j * omega**2),
-                       ("number",) * 3, "number", "", beyond_paper=True,
-                       source="000, 5.6")
-MEAN_POWER = Rule("mean power of the drive", lambda m, omega: m * omega, ("number", "number"), "number",
-                  "", unit="W")
-POWER_GIVEN_OFF = Rule("mean power of an engine", lambda m, omega: -m * omega, ("number", "number"), "number",
-                       "",
-                       unit="W")
-POWER_BEFORE = Rule("power before an efficiency", lambda power, eta: power / eta, ("number", "number"), "number",
-                    "", unit="W", source="002, 1.13")
-POWER_BEHIND = Rule("power behind an efficiency", lambda power, eta: power * eta, ("number", "number"), "number",
-                    "", unit="W")
 BARE = Rule("moment of inertia of the flywheel", lambda first, crank: first - crank, ("number", "number"), "number",
             "", unit="kg*m2")
 BARE_OF_ROTOR = Rule("moment of inertia of the flywheel beside a rotor", lambda first, crank, rotor: first - crank - rotor,
                      ("number",) * 3, "number",
                      "", unit="kg*m2")
-RATIO = Rule("ratio of angular velocities", lambda rotor, crank: rotor / crank, ("number", "number"), "number",
-             "")
-ROTOR = Rule("moment of inertia reduced by a ratio", lambda j, u: j * u**2, ("number", "number"), "number",
-             "", unit="kg*m2")
 RUNNING = Rule("what turns with the crank", lambda first, wheel: first + np.maximum(-wheel, 0.0), ("number", "number"), "number",
                marked("All that turns in the finished machine, the input link included: {name} = {value} kg·m²."), unit="kg*m2")
 TOGETHER_LIMIT, BARE_LIMIT, BARE_OF_ROTOR_LIMIT = (replace(rule, beyond_paper=True) for rule in (TOGETHER, BARE, BARE_OF_ROTOR))
-APART = Rule("difference of moments of inertia", lambda drawn, exact: drawn - exact, ("number", "number"), "number",
-             "", beyond_paper=True, unit="kg*m2")
-
 WITHOUT_CRANK = Rule("without the crank", lambda j, crank: j - crank, ("number", "number"), "number",
                      "", unit="kg*m2", source="002, 1.7")
 ACCELERATION: StepTable = {
@@ -100,6 +76,35 @@ GIVEN_WHEEL: StepTable = {
             "", unit="kg*m2")),
     "J_I": ("added crank", "", TOGETHER),
     "J_вр": ("J_I J_м", lambda: tr("J_rot"), RUNNING),
+    "δ": ("ab μ_E held ω_1", "",
+        Rule("coefficient of non-uniformity from the segment", lambda ab, mu, j, omega: ab * mu / (j * omega**2), ("number",) * 4,
+            "number", "", source="000, 5.6")),
+    "δ∞": ("excess held ω_1", "",
+        Rule("coefficient of non-uniformity from the excess of energy", lambda excess, j, omega: excess / (j * omega**2),
+            ("number",) * 3, "number", "", beyond_paper=True, source="000, 5.6")),
+}
+BESIDE_LIMIT: StepTable = {
+    "ΔJ_м": ("drawn limit", lambda: tr("ΔJ_f"),
+        Rule("difference of moments of inertia", lambda drawn, exact: drawn - exact, ("number", "number"), "number",
+            "", beyond_paper=True, unit="kg*m2")),
+    "разность": ("drawn limit", lambda: tr("difference"), DIFFERENCE),
+}
+DRIVE: StepTable = {
+    "u": ("rated ω_1", "", Rule("ratio of angular velocities", lambda rotor, crank: rotor / crank, ("number", "number"), "number",
+            "")),
+    "J_рот": ("inertia u", lambda: tr("J_rotor"),
+        Rule("moment of inertia reduced by a ratio", lambda j, u: j * u**2, ("number", "number"), "number", "", unit="kg*m2")),
+    "J_к": ("crank J_рот", "", TOGETHER),
+    "P": ("M ω_1", lambda: tr("P_m"), Rule("mean power of the drive", lambda m, omega: m * omega, ("number", "number"), "number",
+            "", unit="W")),
+    "P_дв": ("P η", lambda: tr("P_mot"), Rule("power before an efficiency", lambda power, eta: power / eta, ("number", "number"),
+            "number", "", unit="W", source="002, 1.13")),
+}
+OF_ENGINE: StepTable = {
+    "P": ("M ω_1", lambda: tr("P_m"), Rule("mean power of an engine", lambda m, omega: -m * omega, ("number", "number"), "number",
+            "", unit="W")),
+    "P_дв": ("P η", lambda: tr("P_out"), Rule("power behind an efficiency", lambda power, eta: power * eta, ("number", "number"),
+            "number", "", unit="W")),
 }
 
 
@@ -198,7 +203,7 @@ class Flywheel(Works):
     @planned("flywheel-delta", marked("Coefficient of non-uniformity"))
     def delta_plan(self, plan: Plan) -> None:
         """From the segment ab to the coefficient of non-uniformity that a given flywheel leaves: ``δ``."""
-        plan.add("δ", DELTA_OF_SEGMENT, self.ab, self.mu("energy"), self.held, self.omega1)
+        record(plan, "δ", GIVEN_WHEEL, given={"ab": self.ab, "μ_E": self.mu("energy"), "held": self.held, "ω_1": self.omega1})
         if not float(plan["δ"].value) < STOPS:
             raise too_light(float(self.given_plan["J_м"].value))
 
@@ -223,12 +228,11 @@ class Flywheel(Works):
         """
         excess = self._excess(plan)
         if self.given:
-            found = plan.add("δ∞", DELTA_OF_EXCESS, excess, self.held, self.omega1)
-            plan.add("разность", DIFFERENCE, self.delta, found, symbol=tr("difference"))
+            limit = record(plan, "δ∞", GIVEN_WHEEL, given={"excess": excess, "held": self.held, "ω_1": self.omega1})
+            record(plan, "разность", BESIDE_LIMIT, given={"drawn": self.delta, "limit": limit})
             return
-        flywheel = self._bare(plan, "J_м∞", self._first_converged(plan, excess), BARE_LIMIT, BARE_OF_ROTOR_LIMIT, tr("J_f∞"))
-        plan.add("ΔJ_м", APART, self.first_plan["J_м"], flywheel, symbol=tr("ΔJ_f"))
-        plan.add("разность", DIFFERENCE, self.first_plan["J_м"], flywheel, symbol=tr("difference"))
+        limit = self._bare(plan, "J_м∞", self._first_converged(plan, excess), BARE_LIMIT, BARE_OF_ROTOR_LIMIT, tr("J_f∞"))
+        record(plan, "ΔJ_м разность", BESIDE_LIMIT, given={"drawn": self.first_plan["J_м"], "limit": limit})
 
     def _bare(self, plan: Plan, name: str, first: Step, without: Rule, with_rotor: Rule, symbol: str) -> Step:
         """What of all that turns with the crank is left for the flywheel."""
@@ -242,11 +246,10 @@ class Flywheel(Works):
         motor = self.data.motor
         if motor is None or not motor.rotor_inertia:
             return
-        u: Any = motor.ratio and named(motor.ratio, "flywheel.motor.ratio", "u")
-        u = u or plan.add("u", RATIO, named(motor.rated, "flywheel.motor.rated", tr("ω_r"), "rad/s"), self.omega1)
-        rotor = plan.add("J_рот", ROTOR, named(motor.rotor_inertia, "flywheel.motor.rotor_inertia", tr("J_r"), "kg*m2"), u,
-                         symbol=tr("J_rotor"))
-        plan.add("J_к", TOGETHER, self.reduced.crank, rotor)
+        given = {"u": motor.ratio and named(motor.ratio, "flywheel.motor.ratio", "u"), "ω_1": self.omega1,
+                 "rated": named(motor.rated, "flywheel.motor.rated", tr("ω_r"), "rad/s"), "crank": self.reduced.crank,
+                 "inertia": named(motor.rotor_inertia, "flywheel.motor.rotor_inertia", tr("J_r"), "kg*m2")}
+        record(plan, "J_рот J_к" if motor.ratio else "u J_рот J_к", DRIVE, given=given)
 
     @property
     def turning(self) -> float:
@@ -365,20 +368,9 @@ class Flywheel(Works):
 
         What a working machine takes, what an engine gives off.
         """
-        takes = self.reduced.resisting
-        power = plan.add("P", MEAN_POWER if takes else POWER_GIVEN_OFF, self.driving_plan["M"], self.omega1, symbol=tr("P_m"))
-        if self.data.efficiency is not None:
-            eta = named(self.data.efficiency, "flywheel.efficiency", "η")
-            plan.add("P_дв", POWER_BEFORE if takes else POWER_BEHIND, power, eta, symbol=tr("P_mot") if takes else tr("P_out"))
-
-    def speed(self, phi: Floats, inertia: float | None = None) -> Floats:
-        """Angular velocity of the crank over the angle with the exact flywheel (or another, kg m2), rad/s.
-
-        The motion is the steady one that reaches omega (1 + delta/2) at the upper contact.
-        """
-        fastest = self.reduced.omega1 * (1 + (self.limit.delta if self.given else self.unevenness) / 2)
-        j = self.limit.inertia if inertia is None else inertia
-        return speed(self.reduced.moment, self.reduced.inertia, self.edges, j, (self.limit.phi_max, fastest), phi)
+        eta = self.data.efficiency and named(self.data.efficiency, "flywheel.efficiency", "η")
+        record(plan, "P" if eta is None else "P P_дв", {} if self.reduced.resisting else OF_ENGINE, DRIVE,
+               given={"M": self.driving_plan["M"], "ω_1": self.omega1, "η": eta})
 
     # --- acceleration of the crank ------------------------------------------------------------------------
     def acceleration_plan(self, phi: Any, labels: tuple[str, ...] = ("",), name: str = "@angles") -> Plan:
@@ -407,10 +399,6 @@ class Flywheel(Works):
             given |= {"moment": plan["M_пр"], "inertia": plan["J_пр"], "slope": plan["J′"]}
         record(plan, "J_II ψ dJ/dφ M J ε1", ACCELERATION, given=given)
         return plan
-
-    def acceleration(self, phi: Any) -> Floats:
-        """Angular acceleration of the crank, rad/s2, positive in the sense of rotation."""
-        return np.asarray(self.acceleration_plan(phi)["ε1"].value)
 
     @property
     def drawn(self) -> dict[str, Any]:

@@ -19,11 +19,10 @@ from tmm_sheets.construction.rules import GIVEN_INERTIA, taken
 from tmm_sheets.construction.step import Given, Plan, Rule, Step, named, value_of
 from tmm_sheets.mechanism.model import Link, Mechanism
 from tmm_sheets.methods.flywheel.flywheel import WITHOUT_CRANK
-from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import Applied, distinct
-from tmm_sheets.methods.linkage.positions import Positions, passages, position_plan
-from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
+from tmm_sheets.methods.linkage.motion import Accelerations, Velocities, acceleration_plan, velocity_plan
+from tmm_sheets.methods.linkage.positions import Passages, Positions, position_plan
 from tmm_sheets.words import marked, tr
 
 _SOURCE = "000, 5"
@@ -222,7 +221,7 @@ def turning(link: Link) -> float:
 
 def turning_back(m: Mechanism, cycle: Cycle) -> list[float]:
     """Angles turned, rad, at which links turn back at once: change points of groups that keep their side."""
-    changes = [a for g in m.groups if not g.follow for a in passages(m).angles(g)]
+    changes = [a for g in m.groups if not g.follow for a in Passages(m).angles(g)]
     once = [float(np.mod(cycle.sense * (a - cycle.start), 2 * np.pi)) for a in changes]
     return [x + 2 * np.pi * n for x in once for n in range(round(cycle.period / (2 * np.pi)))]
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import Literal
 
-from tmm_sheets.construction.step import Plan, Reading, Rule, Step, value_of
-from tmm_sheets.construction.tables import StepTable, record
+from tmm_sheets.construction.step import Plan, Reading, Rule, Step, StepTable, record, value_of
 from tmm_sheets.numbers import number
 from tmm_sheets.words import marked, tr
 

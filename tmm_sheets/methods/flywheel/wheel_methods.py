@@ -20,22 +20,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction.expression import Floats
-from tmm_sheets.construction.readable import MAIN
 from tmm_sheets.construction.rules import DISTANCE
-from tmm_sheets.construction.scale import Scale, fit
-from tmm_sheets.construction.step import Given, Plan, Reading, Reported, Row, Rule, Step, value_of
-from tmm_sheets.construction.tables import planned
+from tmm_sheets.construction.scale import MAIN, Scale, fit
+from tmm_sheets.construction.step import Given, Plan, Reading, Reported, Row, Rule, Step, StepTable, planned, record, value_of
 from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace
 from tmm_sheets.methods.flywheel.energy_mass import (
     AT_CONTACT,
     ConvergedWheel,
     Running,
     Tangents,
+    continuous_argmax,
     energy_mass_plan,
-    highest,
-    left_by,
     limit,
     limit_segment,
+    residual_fluctuation,
     tangents,
     touched,
 )
@@ -173,7 +171,7 @@ class Wittenbauer(Flywheel):
             return tangents(lambda phi: self.energy_curve(phi) * self.scales.energy.mu, self.inertia, self.samples,
                             self.reduced.omega1, delta)
 
-        found, _ = left_by(float(self.added.value), of, self.reduced.omega1, self.limit.delta)
+        found, _ = residual_fluctuation(float(self.added.value), of, self.reduced.omega1, self.limit.delta)
         return Given(found, "δ of the tangents", "δ", over="none",
                      choice="the tangents meet over the flywheel's moment of inertia: they lead back to it")
 
@@ -220,35 +218,52 @@ CONVERT = Rule("convert ordinates", lambda y, mu_j, omega, mu_e: y * (mu_j * ome
                       "μ_J·ω1²/(2μ_E) = {1}·{2}²/(2·{3}): {name} = {value}."), source="002, 1.9")
 LAY_BELOW = Rule("lay off below a curve", lambda a, b: a - b, ("ordinate", "ordinate"), "ordinate",
                  marked("From the end of the ordinate {0} lay off {1} downwards: {name} = {value} is left."))
-EXTREME = Rule("horizontal tangent", lambda x, y: x + 1j * y, ("ordinate", "ordinate"), "point",
-               marked("Draw the horizontal tangent to the curve T_I(φ1): point of contact {name} with the abscissa {0} and the "
-                      "ordinate {1}."))
-MIDDLE = Rule("middle", lambda a, b: (a + b) / 2, ("point", "point"), "point",
-              marked("Through the middle of the segment {0}{1} draw the axis of the mean angular velocity: point {name}."))
-FROM_AXIS = Rule("ordinate from an axis", lambda y, axis: y - np.imag(axis), ("ordinate", "point"), "ordinate",
-                 marked("From the axis of the mean angular velocity measure the ordinate {name} = {value}."))
-SPEED_SCALE = Rule("scale factor of the angular velocity", lambda mu, j, omega: mu / (j * omega), ("number",) * 3, "number",
-                   "",
-                   unit="rad/s/mm",
-                   source="002, 1.11")
-ANGULAR_SPEED = Rule("angular velocity from its graph", lambda y, mu, mean: mean + mu * y, ("ordinate", "number", "number"),
-                     "number", marked("{name} = {2} + {1}·y = {value} rad/s."), unit="rad/s")
-EXTREME_SPEED = Rule("angular velocity at an extreme", lambda at, axis, mu, mean: mean + mu * (np.imag(at) - np.imag(axis)),
-                     ("point", "point", "number", "number"), "number",
-                     marked("At {0} the angular velocity is {name} = {3} + {2}·y = {value} rad/s."), unit="rad/s")
-FOUND = Rule("found by the exact running", lambda w: w, ("number",), "number",
-             marked("Exact running by the law of energy gives {name} = {value} rad/s."), unit="rad/s", beyond_paper=True)
-NON_UNIFORMITY = Rule("non-uniformity of a running", lambda fast, slow: (fast - slow) / ((fast + slow) / 2), ("number", "number"),
-                      "number", "", beyond_paper=True)
-EXCESS = Rule("mean of two moments of inertia", lambda a, b: (a + b) / 2, ("number", "number"), "number",
-              marked("By theory the method gives too much: {formula}."), unit="kg*m2",
-              beyond_paper=True)
 ENERGY_SCALE = Rule("scale factor of an energy", lambda mu_j, omega: mu_j * omega**2 / 2, ("number", "number"), "number",
                     marked("Scale factor of the kinetic energy on the graph J: {formula}."), unit="J/mm",
                     exact=True)
-BETWEEN_LIMITS = Rule("difference of two moments of inertia", lambda a, b: a - b, ("number", "number"), "number",
-                      marked("In the limit the methods differ: {formula}."), unit="kg*m2",
-                      beyond_paper=True)
+FOUND = Rule("found by the exact running", lambda w: w, ("number",), "number",
+             marked("Exact running by the law of energy gives {name} = {value} rad/s."), unit="rad/s", beyond_paper=True)
+FIRST_ENERGY: StepTable = {
+    "T_II": ("J μ_J ω_1 μ_E", "", CONVERT),
+    "T_I": ("ΔE T_II", "", LAY_BELOW),
+    "points": ("x T_I", "", PLOT),
+    "M_#": ("x_# level_#", "", Rule("horizontal tangent", lambda x, y: x + 1j * y, ("ordinate", "ordinate"), "point",
+            marked("Draw the horizontal tangent to the curve T_I(φ1): point of contact {name} with the abscissa {0} and the "
+                   "ordinate {1}."))),
+    "a": ("M_max", "", CARRY),
+    "b": ("M_min", "", CARRY),
+    "ab": ("a b", "", DISTANCE),
+    "E_II": ("T_II μ_E", "", FROM_PAPER, marked("Energy of the second group of links: {formula}.")),
+    "E_I": ("T_I μ_E", "", FROM_PAPER, marked("Energy of the first group of links: {formula}.")),
+}
+CRANK_SPEED: StepTable = {
+    "μ_ω": ("μ_E J_вр ω_1", "", Rule("scale factor of the angular velocity", lambda mu, j, omega: mu / (j * omega), ("number",) * 3,
+            "number", "", unit="rad/s/mm", source="002, 1.11")),
+    "O": ("a b", "", Rule("middle", lambda a, b: (a + b) / 2, ("point", "point"), "point",
+            marked("Through the middle of the segment {0}{1} draw the axis of the mean angular velocity: point {name}."))),
+    "y": ("T_I O", "", Rule("ordinate from an axis", lambda y, axis: y - np.imag(axis), ("ordinate", "point"), "ordinate",
+            marked("From the axis of the mean angular velocity measure the ordinate {name} = {value}."))),
+    "ω1": ("y μ_ω ω_1", "",
+        Rule("angular velocity from its graph", lambda y, mu, mean: mean + mu * y, ("ordinate", "number", "number"),
+            "number", marked("{name} = {2} + {1}·y = {value} rad/s."), unit="rad/s")),
+    "ω_#": ("M_# O μ_ω ω_1", "",
+        Rule("angular velocity at an extreme", lambda at, axis, mu, mean: mean + mu * (np.imag(at) - np.imag(axis)),
+            ("point", "point", "number", "number"), "number",
+            marked("At {0} the angular velocity is {name} = {3} + {2}·y = {value} rad/s."), unit="rad/s")),
+    "[ω_max]": ("ω_1 δ", "", FASTEST, marked("Permitted: {formula}.")),
+    "[ω_min]": ("ω_1 δ", "", SLOWEST, marked("Permitted: {formula}.")),
+}
+COMPARISON: StepTable = {
+    "δ#": ("ω_max# ω_min#", "",
+        Rule("non-uniformity of a running", lambda fast, slow: (fast - slow) / ((fast + slow) / 2), ("number", "number"),
+            "number", "", beyond_paper=True)),
+    "ΔJ": ("one other", "", Rule("difference of two moments of inertia", lambda a, b: a - b, ("number", "number"), "number",
+            marked("In the limit the methods differ: {formula}."), unit="kg*m2", beyond_paper=True)),
+    "J_max": ("contacts first", "", AT_CONTACT),
+    "J_min": ("contacts second", "", AT_CONTACT),
+    "e": ("J_max J_min", "", Rule("mean of two moments of inertia", lambda a, b: (a + b) / 2, ("number", "number"), "number",
+            marked("By theory the method gives too much: {formula}."), unit="kg*m2", beyond_paper=True)),
+}
 
 
 @dataclass(frozen=True)
@@ -294,21 +309,17 @@ class Mertsalov(Flywheel):
         the horizontal tangents), ``a`` and ``b`` (on the ordinate axis), ``ab`` (their distance); ``E_II`` and ``E_I``, J.
         """
         convert = self.mu("inertia"), self.omega1, self.mu("energy")
+        given = {"J": self.inertia_plan["J"], "ΔE": self.total_plan["ΔE"], "x": self.across,
+                 **dict(zip(("μ_J", "ω_1", "μ_E"), convert, strict=True))}
         plan.auxiliary("μ_T", ENERGY_SCALE, *convert[:2])
-        second = plan.add("T_II", CONVERT, self.inertia_plan["J"], *convert)
-        first = plan.add("T_I", LAY_BELOW, self.total_plan["ΔE"], second)
-        plan.add("points", PLOT, self.across, first)
+        record(plan, "T_II T_I points", FIRST_ENERGY, given=given)
         for name, side, end in (("max", 1, "a"), ("min", -1, "b")):
-            phi = highest(lambda t, side=side: np.asarray(side * np.imag(self.first_curve(t))), self.samples)  # type: ignore[misc]
+            phi = continuous_argmax(lambda t, side=side: np.asarray(side * np.imag(self.first_curve(t))), self.samples)  # type: ignore[misc]
             x, energy, mass = self.contact(name, phi, f"{'highest' if side > 0 else 'lowest'} point of the curve T_I")
             of = self.contacts_plan
             level = of.add(f"T_I_{name}", LAY_BELOW, energy, of.add(f"T_II_{name}", CONVERT, mass, *convert))
-            plan.add(end, CARRY, plan.add(f"M_{name}", EXTREME, x, level))
-        plan.add("ab", DISTANCE, plan["a"], plan["b"])
-        for name, said, ordinate in (("E_II", tr("Energy of the second group of links {name} = {0}·{1} J/mm = {value} J."), second),
-                                     ("E_I", tr("Energy of the first group of links {name} = {0}·{1} J/mm = {value} J."), first)):
-            plan.add(name, FROM_PAPER, ordinate, self.mu("energy"),
-                     say=said)
+            record(plan, f"M_# {end}", FIRST_ENERGY, wheel=name, given={f"x_{name}": x, f"level_{name}": level})
+        record(plan, "ab E_II E_I", FIRST_ENERGY, given=given)
 
     @planned("crank-speed", marked("Graph of the angular velocity of the input link"), "mm", "labels")
     def speed_plan(self, plan: Plan) -> None:
@@ -316,18 +327,12 @@ class Mertsalov(Flywheel):
 
         ``μ_ω`` is its scale factor, ``ω_max`` and ``ω_min`` the angular velocity at the tangents.
         """
-        energy = self.energy_plan
-        mu = plan.add("μ_ω", SPEED_SCALE, self.mu("energy"), self.first_plan["J_вр"], self.omega1)
-        axis = plan.add("O", MIDDLE, energy["a"], energy["b"])
-        y = plan.add("y", FROM_AXIS, energy["T_I"], axis)
-        plan.add("ω1", ANGULAR_SPEED, y, mu, self.omega1)
+        given = {**self.energy_plan.steps, "μ_E": self.mu("energy"), "J_вр": self.first_plan["J_вр"], "ω_1": self.omega1}
+        record(plan, "μ_ω O y ω1", CRANK_SPEED, given=given)
         for name in ("max", "min"):
-            plan.add(f"ω_{name}", EXTREME_SPEED, energy[f"M_{name}"], axis, mu, self.omega1)
+            record(plan, "ω_#", CRANK_SPEED, wheel=name, given=given)
         if not self.given:
-            plan.add("[ω_max]", FASTEST, self.omega1, self.permitted,
-                     say=tr("Permitted: {formula}."))
-            plan.add("[ω_min]", SLOWEST, self.omega1, self.permitted,
-                     say=tr("Permitted: {formula}."))
+            record(plan, "[ω_max] [ω_min]", CRANK_SPEED, given={"ω_1": self.omega1, "δ": self.permitted})
 
     @property
     def own_plans(self) -> tuple[Plan, ...]:
@@ -371,7 +376,7 @@ class Mertsalov(Flywheel):
         def first(phi: Floats) -> Floats:
             return np.asarray(work(phi) - mean * phi - half * self.inertia(phi))
 
-        fast, slow = (highest(lambda phi, side=side: side * first(phi), self.samples) for side in (1, -1))  # type: ignore[misc]
+        fast, slow = (continuous_argmax(lambda phi, side=side: side * first(phi), self.samples) for side in (1, -1))  # type: ignore[misc]
         found = ConvergedWheel(np.nan, np.nan, np.inf, fast, slow, work.panels)
         return limit_segment(plan, found, self.edges, self.at, self.mass, self.omega1, None)
 
@@ -425,14 +430,14 @@ class Mertsalov(Flywheel):
             criterion = f"steady running with {c.first:.6g} kg m2 on the crank whose extremes have the mean omega1"
             say = tr("{method}: exact running by the law of kinetic energy gives {{name}} = {{value}} rad/s."
                      ).format(method=c.name)
-            fast, slow = (plan.add(f"ω_{name}{i}", FOUND, Given(value, f"running {i}", unit="rad/s", over="none", choice=criterion),
-                                   say=say) for name, value in (("max", c.running.fastest), ("min", c.running.slowest)))
-            plan.add(f"δ{i}", NON_UNIFORMITY, fast, slow)
+            for name, value in (("max", c.running.fastest), ("min", c.running.slowest)):
+                plan.add(f"ω_{name}{i}", FOUND, Given(value, f"running {i}", unit="rad/s", over="none", choice=criterion), say=say)
+            record(plan, "δ#", COMPARISON, wheel=str(i))
         if self.given:
             return
-        plan.add("ΔJ", BETWEEN_LIMITS, self.limit_plan["J_I∞"], self.other.limit_plan["J_I∞"])
         contacts = self.mass(self.at("exact-contacts", np.array([self.limit.phi_max, self.limit.phi_min])))
-        plan.add("e", EXCESS, *(plan.add(f"J_{name}", AT_CONTACT, contacts, k) for k, name in enumerate(("max", "min"))))
+        record(plan, "ΔJ J_max J_min e", COMPARISON, given={
+            "one": self.limit_plan["J_I∞"], "other": self.other.limit_plan["J_I∞"], "contacts": contacts, "first": 0, "second": 1})
 
     excess = Reading("comparison_plan", "e")
     """How much the procedure takes too much by theory: (J_II(phi_max) + J_II(phi_min))/2, kg m2; terms in delta left out."""

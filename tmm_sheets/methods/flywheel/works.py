@@ -12,8 +12,7 @@ from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.expression import Floats, primitive
 from tmm_sheets.construction.rules import GIVEN_NUMBER, taken
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.construction.step import Given, Helper, Plan, Row, Rule, Step, named
-from tmm_sheets.construction.tables import StepTable, planned, record
+from tmm_sheets.construction.step import Given, Helper, Plan, Row, Rule, Step, StepTable, named, planned, record
 from tmm_sheets.methods.flywheel.diagram_scales import Diagrams
 from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT
 from tmm_sheets.methods.integration import AREA, ON_CURVE, ORIGIN, SMOOTH, Quadrature, differentiate, integrate
@@ -68,9 +67,9 @@ WORK_AT = taken("work of the cycle", "J", marked("Work of the cycle {name} = {va
 TO_PAPER = Rule("to scale", lambda value, mu: value / mu, ("number", "number"), "number",
                 marked("Ordinate on the drawing: {formula}."), unit="mm")
 FROM_PAPER = Rule("from scale", lambda y, mu: y * mu, ("ordinate", "number"), "number",
-                  marked("{name} = {0}·{1} J/mm = {value} J."), unit="J")
+                  "{formula}.", unit="J")
 TO_SLOPE = Rule("slope on paper", lambda value, mu, pole: value / (mu * pole), ("number",) * 3, "number",
-                marked("Slope {name} = M/(μ_M·H) = {value}."))
+                marked("Slope: {formula}."))
 ABSCISSA = Rule("abscissa of an angle", lambda phi, mu: phi / mu, ("number", "number"), "number",
                 marked("Abscissa of the angle {name} = {value} mm."), unit="mm", exact=True)
 BORDER_AT = replace(taken("abscissa of a border", "mm", marked("Abscissa of the border of an interval {name} = {value} mm.")),
@@ -80,15 +79,6 @@ PLOT = Rule(
     marked("At the abscissa {0} lay off the ordinate {1}: a point of the graph."),
     lambda a, v: (Helper("line", complex(a[0], 0), v),),
 )
-BALANCE = Rule(
-    "balance the cycle", np.conj, ("point",), "point",
-    marked("Over the cycle the works are equal: lay off the final ordinate with the opposite sign, point {name}; the line from "
-           "the origin to it is the graph of the work of the constant moment."),
-    lambda a, v: (Helper("line", a[0], v), Helper("line", 0j, v)),
-)
-CONSTANT_MOMENT = Rule("constant moment", lambda p, mu: np.imag(p) * mu, ("point", "number"), "number",
-                       marked("Constant reduced moment that balances the cycle: {name} = y·μ_M = {value} N·m."), unit="N*m",
-                       source="000, 5.3")
 MEASURE = Rule("measure ordinates", _gather, (), "ordinate", marked("Measure the ordinate of the graph of work {name} = {value}."))
 ON_LINE = Rule("ordinate of a straight line", lambda x, end: x * np.imag(end) / np.real(end), ("ordinate", "point"), "ordinate",
                marked("At the abscissa {0} measure the ordinate of the line {name} = {value}."))
@@ -100,8 +90,6 @@ AREA_ORDINATE = Rule("ordinate from an area", lambda a, mu: a / mu, ("number", "
 BESIDE_AREA = Rule("difference from the area", lambda end, area: np.imag(end) - area, ("point", "ordinate"), "ordinate",
                    marked("The final ordinate {0} as constructed differs from it by {name} = {value}: the ordinate in the middle "
                           "of an interval is not the mean ordinate of the curve."), beyond_paper=True)
-MEAN_MOMENT = Rule("mean moment from the work", lambda a, period: -a / period, ("number", "number"), "number",
-                   marked("By the area {name} = {value} N·m."), beyond_paper=True, unit="N*m")
 ENLARGE = Rule("enlarge ordinates", lambda y, mu, other: y * (mu / other), ("ordinate", "number", "number"), "ordinate",
                marked("Convert the ordinate {0} from the scale factor μ_A = {1} J/mm to μ_E = {2} J/mm: {name} = {0}·μ_A/μ_E = "
                       "{value}."))
@@ -114,12 +102,28 @@ TOTAL: StepTable = {
     "ΣA": ("y_2 y_1", "", SUM),
     "ΔE": ("ΣA μ_A μ_E", "", ENLARGE),
     "points": ("x ΔE", "", PLOT),
-    "A": ("y_2 μ_A", "", FROM_PAPER, marked("Work of the variable moment {name} = y_2·μ_A = {0}·{1} J/mm = {value} J.")),
-    "A_K": ("y_1 μ_A", "", FROM_PAPER, marked("Work of the constant moment {name} = y_1·μ_A = {0}·{1} J/mm = {value} J.")),
-    "E": ("ΔE μ_E", "", FROM_PAPER, marked("Change of the kinetic energy {name} = ΔE·μ_E = {0}·{1} J/mm = {value} J.")),
+    "A": ("y_2 μ_A", "", FROM_PAPER, marked("Work of the variable moment: {formula}.")),
+    "A_K": ("y_1 μ_A", "", FROM_PAPER, marked("Work of the constant moment: {formula}.")),
+    "E": ("ΔE μ_E", "", FROM_PAPER, marked("Change of the kinetic energy: {formula}.")),
     "A_Σ": ("A last", "", WORK_AT),
     "δA": ("A_Σ area", "",
         DIFFERENCE, marked("The work of the cycle against that by the area of the graph: {name} = {value} %.")),
+}
+BY_AREA: StepTable = {
+    "A": ("moment halves weights ends", "", AREA),
+    "A_Σ": ("A last", "", WORK_AT),
+    "M": ("A_Σ φ_ц", "", Rule("mean moment from the work", lambda a, period: -a / period, ("number", "number"), "number",
+            marked("By the area {name} = {value} N·m."), beyond_paper=True, unit="N*m")),
+}
+DRIVING: StepTable = {
+    "0": ("zero", "", ORIGIN),
+    "K": ("end", "", Rule("balance the cycle", np.conj, ("point",), "point",
+            marked("Over the cycle the works are equal: lay off the final ordinate with the opposite sign, point {name}; the line "
+                   "from the origin to it is the graph of the work of the constant moment."),
+            lambda a, v: (Helper("line", a[0], v), Helper("line", 0j, v)))),
+    "M": ("found μ_M", "", Rule("constant moment", lambda p, mu: np.imag(p) * mu, ("point", "number"), "number",
+            marked("Constant reduced moment that balances the cycle: {name} = y·μ_M = {value} N·m."), unit="N*m",
+            source="000, 5.3")),
 }
 OF_OWN_SCALE: StepTable = {
     "ΔE": ("ΣA μ_A μ_ΔE", "", ENLARGE,
@@ -129,7 +133,7 @@ OF_OWN_SCALE: StepTable = {
             marked("For the energy-mass diagram convert the ordinate {0} from the scale factor μ_{{ΔE}} = {1} J/mm to μ_E = {2} "
                    "J/mm: {name} = {0}·μ_{{ΔE}}/μ_E = {value}.")),
     "E": ("ΔE μ_ΔE", "", FROM_PAPER,
-          marked("Change of the kinetic energy {name} = ΔE·μ_{{ΔE}} = {0}·{1} J/mm = {value} J.")),
+          marked("Change of the kinetic energy: {formula}.")),
 }
 """The graph of the change of energy with a scale factor of its own."""
 
@@ -270,20 +274,19 @@ class Works(Diagrams):
     def area_plan(self, plan: Plan) -> None:
         """Work by the area of the graph of the moment: ``A`` at the positions, ``A_Σ`` of the cycle, J; ``M`` its mean, N m."""
         q = Quadrature(np.zeros_like, self.edges, 4)
-        moment = self.reduced.at("area", q.at).moment()
-        ends = Given(q.panels * np.array(self.at_positions), "borders of the positions")
-        row = plan.add("A", AREA, moment, Given(q.halves, "half widths of the panels", unit="rad", over="curve"),
-                       Given(q.weights, "weights of the quadrature", over="curve"), ends)
-        total = plan.add("A_Σ", WORK_AT, row, len(self.labels) - 1)
-        plan.add("M", MEAN_MOMENT, total, named(self.reduced.period, "cycle", "φ_ц", "rad"))
+        given = {"moment": self.reduced.at("area", q.at).moment(), "last": len(self.labels) - 1,
+                 "halves": Given(q.halves, "half widths of the panels", unit="rad", over="curve"),
+                 "weights": Given(q.weights, "weights of the quadrature", over="curve"),
+                 "ends": Given(q.panels * np.array(self.at_positions), "borders of the positions"),
+                 "φ_ц": named(self.reduced.period, "cycle", "φ_ц", "rad")}
+        record(plan, "A A_Σ M", BY_AREA, given=given)
 
     @planned("driving-moment", marked("Graph of the constant moment"), "mm")
     def driving_plan(self, plan: Plan) -> None:
         """Work of the constant moment (step ``K``, end of its line) and its differentiation (step ``dK``), mm; ``M``, N m."""
-        origin = plan.add("0", ORIGIN, 0.0)
-        end = plan.add("K", BALANCE, self.work_ends[-1])
-        (found,) = differentiate(plan, "", [origin, end], self.pole, intervals=["K"])
-        plan.add("M", CONSTANT_MOMENT, found, self.mu("moment"))
+        end = record(plan, "0 K", DRIVING, given={"zero": 0.0, "end": self.work_ends[-1]})
+        (found,) = differentiate(plan, "", [plan["0"], end], self.pole, intervals=["K"])
+        record(plan, "M", DRIVING, given={"found": found, "μ_M": self.mu("moment")})
 
     @planned("total-work", marked("Graph of the total work"), "mm", "labels")
     def total_plan(self, plan: Plan) -> None:

@@ -15,7 +15,6 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.expression import Directions, Points, Reals, Signs, primitive
-from tmm_sheets.construction.readable import CURVE
 from tmm_sheets.construction.rules import (
     ALONG,
     ARC_ARC,
@@ -25,8 +24,8 @@ from tmm_sheets.construction.rules import (
     RAY,
     TANGENT,
 )
-from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step
-from tmm_sheets.construction.tables import StepTable, record
+from tmm_sheets.construction.scale import CURVE
+from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step, StepTable, record
 from tmm_sheets.methods.gears.gear_geometry import GearWheel, PairGeometry
 from tmm_sheets.methods.gears.rack import TAKEN
 from tmm_sheets.numbers import number
@@ -275,11 +274,6 @@ def record_engagement(pair: PairGeometry, plan: Plan) -> None:
     record(plan, "eps Δeps", ENGAGEMENT, given=given)
 
 
-def parts_of_pole_segment(drawn: float) -> int:
-    """Number of equal parts of P_wN for a segment of ``drawn`` mm on paper: 15..25 mm each, never fewer than two."""
-    return max(2, round(drawn / 20))
-
-
 def divisions(wheel: GearWheel, parts: int) -> range:
     """Division numbers from 0 at the pole to the last one beyond N that the tip needs, two at least (manual 000: 2-4)."""
     beyond = (wheel.t_outer / wheel.t_pole - 1) * parts
@@ -361,25 +355,6 @@ def common_ordinate(pair: PairGeometry) -> Given:
     return Given(found, "gear.sliding.ordinate", "y_V", "mm", "000, 6", "none", said)
 
 
-def sliding_plan(pair: PairGeometry, engagement: Plan, parts: tuple[int, int] = (3, 4)) -> Plan:
-    """Speeds of the contact point along both profiles and specific sliding, from N1 (division 0) over the pole to the last point.
-
-    Speeds are ordinates in mm of paper with :func:`common_ordinate` at the pole; sliding is infinite at a wheel's own foot.
-    """
-    first, second = parts
-    plan = Plan("gear-sliding", tr("Specific sliding"), "m", tuple(str(k) for k in range(first + second + 1)))
-    one = np.concatenate([np.arange(first, 0, -1.0), np.zeros(second + 1)])
-    two = np.concatenate([np.zeros(first), np.arange(second + 1.0)])
-    return _sliding_steps(plan, pair, engagement, one / first, two / second)
-
-
-def sliding_between(pair: PairGeometry, engagement: Plan, share: Reals) -> Plan:
-    """The same for any points of the line: ``share`` -1 at N1, 0 at the pole, 1 at the :func:`last_point` (for smooth curves)."""
-    share = np.asarray(share, dtype=float)
-    plan = Plan("gear-sliding-between", tr("Specific sliding between the divisions"), "m", tuple(f"{v:g}" for v in share))
-    return _sliding_steps(plan, pair, engagement, np.maximum(-share, 0), np.maximum(share, 0))
-
-
 def record_greatest_sliding(pair: Any, plan: Plan) -> None:
     """Sliding of each wheel at the end of the active line next to its own foot: steps ``theta1``, ``theta2``."""
     engagement: Plan = pair.engagement
@@ -393,7 +368,11 @@ def record_greatest_sliding(pair: Any, plan: Plan) -> None:
         plan.add(f"theta{i}", SLIDING, own, other, symbol=f"θ_{i}")
 
 
-def _sliding_steps(plan: Plan, pair: PairGeometry, engagement: Plan, to_first: Any, to_second: Any) -> Plan:
+def sliding_plan(plan: Plan, pair: PairGeometry, engagement: Plan, to_first: Any, to_second: Any) -> Plan:
+    """Speeds of the contact point along both profiles and specific sliding, in points at some shares of N1 and the last point.
+
+    Speeds are ordinates in mm of paper with :func:`common_ordinate` at the pole; sliding is infinite at a wheel's own foot.
+    """
     given = {name: engagement[name] for name in ("Pw", "N1", "N2")} | {
         "last": engagement[last_point(pair)], "ordinate": common_ordinate(pair),
         "to_first": Given(to_first, "gear.sliding.share[0]"), "to_second": Given(to_second, "gear.sliding.share[1]")}

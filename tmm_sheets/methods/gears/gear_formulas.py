@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.expression import Reals, primitive
-from tmm_sheets.construction.step import Given, GivenNumber, Kind, Plan, Rule, Step
-from tmm_sheets.construction.tables import StepTable
+from tmm_sheets.construction.step import Given, GivenNumber, Kind, Plan, Rule, Step, StepTable
 from tmm_sheets.methods.gears.rack import Rack
 from tmm_sheets.words import marked
 
@@ -90,8 +89,7 @@ CLEARANCE = formula("clearance coefficient", lambda c: c, (N,), marked("Bottom c
                      marked("GOST 13755-81"))
 SHIFT = formula("shift coefficient", lambda x: x, (N,), marked("Profile shift coefficient {name} = {value}."), "", "000, 6.1")
 INVOLUTE = formula("involute function", involute, (A,), "", "")
-CHORD = formula("chord of an arc", lambda r, arc: 2 * r * np.sin(arc / (2 * r)), (N, N),
-                 marked("2r·sin(arc/2r): {name} = 2 × {0} × sin({1}/(2 × {0})) = {value} mm."))
+CHORD = formula("chord of an arc", lambda r, arc: 2 * r * np.sin(arc / (2 * r)), (N, N), "")
 
 
 def fillet_start(rho: Reals, rb: Reals, rf: Reals) -> Reals:
@@ -167,8 +165,7 @@ FORMULAS: StepTable = {
         formula("least shift coefficient", lambda h, least, z: h * (least - z) / least, (N, N, N), "", "", "000, 6.1")),
     "x": ("ha' z alpha", "x_#",
         formula("shift without undercut", lambda h, z, a: np.maximum(h - z * np.sin(a) ** 2 / 2, 0.0), (N, N, A),
-                marked("Least shift without undercut (not less than zero) x = h_a* − z·sin²α/2: {name} = {0} − {1}·sin²{2}/2; we "
-                       "take {value}."), "", marked("GOST 16532-70"))),
+                marked("Least shift without undercut, not less than zero: {formula}."), "", marked("GOST 16532-70"))),
     "inv_alpha": ("alpha", "inv α", INVOLUTE),
     "inv_alpha_w": ("inv_alpha x1 x2 alpha z1 z2", "inv α_w",
         formula("involute function of the working pressure angle",
@@ -193,11 +190,8 @@ FORMULAS: StepTable = {
         formula("tip radius", lambda m, z, h, x, dy: m * (z / 2 + h + x - dy), (N, N, N, N, N), "")),
     "rf": ("m z ha' c x", "r_{f#}", formula("root radius", lambda m, z, h, c, x: m * (z / 2 - h - c + x), (N, N, N, N, N), "")),
     "s": ("m x alpha", "s_#", formula("tooth thickness", lambda m, x, a: m * (pi / 2 + 2 * x * np.tan(a)), (N, N, A), "")),
-    "s_chord": ("r s", "s̅_#", CHORD,
-        marked("Chordal tooth thickness on the reference circle, 2r·sin(arc/2r): {name} = 2 × {0} × sin({1}/(2 × {0})) = "
-               "{value} mm.")),
-    "p_chord": ("r p", "p̅_#", CHORD,
-        marked("Chordal pitch on the reference circle, 2r·sin(arc/2r): {name} = 2 × {0} × sin({1}/(2 × {0})) = {value} mm.")),
+    "s_chord": ("r s", "s̅_#", CHORD),
+    "p_chord": ("r p", "p̅_#", CHORD),
     "pb": ("m alpha", "p_b",
         formula("base pitch", lambda m, a: pi * m * np.cos(a), (N, A), "", source=marked("GOST 16532-70"))),
     "rho_a": ("ra rb", "ρ_{a#}",
@@ -261,8 +255,8 @@ OF_DISTANCE: StepTable = {
     "x1": ("x_sum z1 z2 x_min1 x_min2", "x_1",
         formula("shift of the first wheel from the sum", lambda total, z1, z2, least1, least2: np.maximum(
                     np.minimum(total * z2 / (z1 + z2), total - least2), least1), (N, N, N, N, N),
-                marked("The sum of the shifts is divided inversely as the numbers of teeth, x_1 = x_Σz_2/(z_1 + z_2), as far as "
-                       "neither wheel becomes undercut (least shifts {3} and {4}): {name} = {value}."), "", GIVEN_BY)),
+                marked("The sum of the shifts is divided inversely as the numbers of teeth, as far as neither wheel becomes "
+                       "undercut: {formula}."), "", GIVEN_BY)),
     "x2": ("x_sum x1", "x_2", formula("rest of the sum of the shifts", lambda total, x1: total - x1, (N, N), "", "", GIVEN_BY)),
 }
 """Formulas in the place of those where the centre distance is given."""
@@ -279,20 +273,19 @@ RACK_SIZES: StepTable = {
     "rho": ("c m alpha", "ρ_f", RACK_FILLET),
     "a": ("m", "",
         formula("half of a rack's tooth", lambda m: pi * m / 4, (N,),
-                marked("Half the thickness of the rack tooth on the reference line πm/4: {name} = {value} mm."),
+                marked("Half the thickness of the rack tooth on the reference line: {formula}."),
                 source=marked("GOST 13755-81"))),
     "u": ("a ha' m alpha rho", "",
         formula("tip centre along the reference line",
                 lambda a, h, m, alpha, rho: a - h * m * np.tan(alpha) - rho * np.cos(alpha), (N, N, N, A, N),
-                marked("Centre of the rack's fillet from the axis of its tooth, πm/4 − h_a*m·tan α − ρ_f·cos α: {name} = {0} − "
-                       "{1} × {2} × tan {3} − {4} × cos {3} = {value} mm."), source=marked("GOST 13755-81"))),
+                marked("Centre of the rack's fillet from the axis of its tooth: {formula}."), source=marked("GOST 13755-81"))),
     "y": ("rho ha' c m", "",
         formula("tip centre over the reference line", lambda rho, h, c, m: rho - (h + c) * m, (N, N, N, N),
-                marked("Centre of the rack's fillet from the reference line (minus is downwards), ρ_f − (h_a* + c*)m: {name} = "
-                       "{0} − ({1} + {2}) × {3} = {value} mm."), source=marked("GOST 13755-81"))),
+                marked("Centre of the rack's fillet from the reference line (minus is downwards): {formula}."),
+                source=marked("GOST 13755-81"))),
     "h": ("ha' m alpha", "",
         formula("end of the straight flank", lambda h, m, a: -h * m / np.cos(a), (N, N, A),
-                marked("End of the straight part of the flank, −h_a*m/cos α: {name} = −{0} × {1}/cos {2} = {value} mm."),
+                marked("End of the straight part of the flank: {formula}."),
                 source=marked("GOST 13755-81"))),
     "phi_first": ("r xm a alpha rho_a", "φ_0",
         formula("rolling to the tip of the tooth", lambda r, xm, a, alpha,

@@ -16,8 +16,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from tmm_sheets.construction.step import Plan, Reported, Rule, Step
-from tmm_sheets.construction.tables import StepTable, record
+from tmm_sheets.construction.step import Plan, Reported, Rule, Step, StepTable, record
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears import gear_formulas as gf
 from tmm_sheets.methods.gears.gear_formulas import (
@@ -38,8 +37,8 @@ from tmm_sheets.words import marked, tell, tr
 SOURCE = marked("GOST 19274-73")
 
 
-def _formula(name: str, compute: Any, takes: tuple[Any, ...], wording: str, unit: str = "mm") -> Rule:
-    return formula(name, compute, takes, wording, unit, SOURCE)
+def _formula(name: str, compute: Any, takes: tuple[Any, ...], wording: str, unit: str = "mm", textbook: Any = None) -> Rule:
+    return formula(name, compute, takes, wording, unit, SOURCE, textbook=textbook)
 
 
 def _between(side: Any, other: Any, opposite: Any) -> Any:
@@ -50,39 +49,26 @@ def _between(side: Any, other: Any, opposite: Any) -> Any:
 OF_PAIR: StepTable = {
     "inv_alpha_w": ("inv_alpha x1 x2 alpha z1 z2", "inv α_w",
         _formula("involute function of the working pressure angle of an internal pair",
-                 lambda inv, x1, x2, a, z1, z2: inv + 2 * (x2 - x1) * np.tan(a) / (z2 - z1), (N, N, N, A, N, N),
-                 marked("Involute function of the working pressure angle inv α_w = inv α + 2(x_2 − x_1)·tan α/(z_2 − z_1): {name} "
-                        "= {0} + 2 × ({2} − {1}) × tan {3}/({5} − {4}) = {value}."), "")),
+                 lambda inv, x1, x2, a, z1, z2: inv + 2 * (x2 - x1) * np.tan(a) / (z2 - z1), (N, N, N, A, N, N), "", "")),
     "x_sum": ("z1 z2 inv_alpha inv_alpha_w alpha", "x_d",
         _formula("difference of the shifts", lambda z1, z2, inv, inv_w, a: (z2 - z1) * (inv_w - inv) / (2 * np.tan(a)),
-                 (N, N, N, N, A),
-                 marked("Difference of the shifts from the centre distance x_d = (z_2 − z_1)(inv α_w − inv α)/(2tan α): {name} = "
-                        "({1} − {0}) × ({3} − {2})/(2 × tan {4}) = {value}."), "")),
+                 (N, N, N, N, A), "", "")),
     "x2": ("x_sum x1", "x_2",
-        _formula("shift of the ring from the difference", lambda total, x1: x1 + total, (N, N),
-                 marked("Shift of the ring x_2 = x_1 + x_d: {name} = {1} + {0} = {value}."), "")),
+        _formula("shift of the ring from the difference", lambda total, x1: x1 + total, (N, N), "", "")),
     "a": ("m z1 z2", "",
-        _formula("reference centre distance of an internal pair", lambda m, z1, z2: m * (z2 - z1) / 2, (N, N, N),
-                 marked("Reference centre distance a = m(z_2 − z_1)/2: {name} = {0} × ({2} − {1})/2 = {value} mm."))),
+        _formula("reference centre distance of an internal pair", lambda m, z1, z2: m * (z2 - z1) / 2, (N, N, N), "")),
     "y": ("z1 z2 alpha alpha_w", "",
         _formula("centre distance modification coefficient of an internal pair",
-                 lambda z1, z2, a, w: (z2 - z1) * np.sin((a + w) / 2) * np.sin((w - a) / 2) / np.cos(w), (N, N, A, A),
-                 marked("Centre distance modification coefficient y = (z_2 − z_1)(cos α/cos α_w − 1)/2: {name} = ({1} − {0}) × "
-                        "(cos {2}/cos {3} − 1)/2 = {value}."), "")),
+                 lambda z1, z2, a, w: (z2 - z1) * np.sin((a + w) / 2) * np.sin((w - a) / 2) / np.cos(w), (N, N, A, A), "", "",
+                 textbook=lambda z1, z2, a, w: (z2 - z1) * (np.cos(a) / np.cos(w) - 1) / 2)),
     "dy": ("x1 x2 y", "Δy",
-        _formula("tip modification coefficient of an internal pair", lambda x1, x2, y: x2 - x1 - y, (N, N, N),
-                 marked("Coefficient Δy = x_2 − x_1 − y: {name} = {1} − {0} − {2} = {value}."), "")),
+        _formula("tip modification coefficient of an internal pair", lambda x1, x2, y: x2 - x1 - y, (N, N, N), "", "")),
     "ra": ("m z ha x dy", "r_{a#}",
-        _formula("tip radius of the pinion in a ring", lambda m, z, h, x, dy: m * (z / 2 + h + x + dy), (N, N, N, N, N),
-                 marked("Tip radius of the pinion r_a = m(z/2 + h_a* + x + Δy): {name} = {0} × ({1}/2 + {2} + {3} + "
-                        "{4}) = {value} mm."))),
+        _formula("tip radius of the pinion in a ring", lambda m, z, h, x, dy: m * (z / 2 + h + x + dy), (N, N, N, N, N), "")),
     "g_alpha": ("rho_a1 rho_a2 N1N2", "g_α",
-        _formula("active line of action of an internal pair", lambda one, two, line: one - two + line, (N, N, N),
-                 marked("Length of the path of contact g_α = ρ_a1 − ρ_a2 + N_1N_2: {name} = {0} − {1} + {2} = {value} mm."))),
+        _formula("active line of action of an internal pair", lambda one, two, line: one - two + line, (N, N, N), "")),
     "rho_p": ("N1N2 rho_a'", "ρ_{p#}",
-        _formula("radius of curvature at the lowest contact in a ring", lambda line, other: other - line, (N, N),
-                 marked("Radius of curvature at the lowest point of the active profile ρ_p1 = ρ_a2 − N_1N_2: {name} = {1} − {0} = "
-                        "{value} mm."))),
+        _formula("radius of curvature at the lowest contact in a ring", lambda line, other: other - line, (N, N), "")),
     "theta_tip1": ("ra1 ra2 a_w", "θ_1",
         _formula("angle of the crossing tip circles about the pinion", lambda ra1, ra2, a: pi - _between(ra1, a, ra2), (N, N, N),
                  marked("Angle at the centre of the pinion from the line of centres to the crossing of the tip circles (0 without "
@@ -95,35 +81,25 @@ OF_PAIR: StepTable = {
         _formula("clearance of the tips", lambda one, two, tip1, tip2, w, z1, z2: (
                      (one + involute(tip1) - involute(w)) * z1 / z2 + involute(w) - involute(tip2) - two), (N, N, A, A, A, N, N),
                  marked("Clearance of the tips beside the mesh as an angle of the ring (not less than zero: no interference of "
-                        "the tips), (θ_1 + inv α_a1 − inv α_w)z_1/z_2 + inv α_w − inv α_a2 − θ_2: {name} = {value}."), "rad")),
+                        "the tips): {formula}."), "rad")),
 }
 """Formulas of an internal pair in the place of those of an external one."""
 OF_RING: StepTable = OF_PAIR | {
     "ra": ("m z ha x dy", "r_{a#}",
-        _formula("tip radius of a ring", lambda m, z, h, x, dy: m * (z / 2 - h + x - dy), (N, N, N, N, N),
-                 marked("Tip radius of the ring r_a = m(z/2 − h_a* + x − Δy): {name} = {0} × ({1}/2 − {2} + {3} − {4}) "
-                        "= {value} mm."))),
+        _formula("tip radius of a ring", lambda m, z, h, x, dy: m * (z / 2 - h + x - dy), (N, N, N, N, N), "")),
     "rf": ("m z ha' c x", "r_{f#}",
-        _formula("root radius of a ring", lambda m, z, h, c, x: m * (z / 2 + h + c + x), (N, N, N, N, N),
-                 marked("Root radius of the ring r_f = m(z/2 + h_a* + c* + x): {name} = {0} × ({1}/2 + {2} + {3} + "
-                        "{4}) = {value} mm."))),
+        _formula("root radius of a ring", lambda m, z, h, c, x: m * (z / 2 + h + c + x), (N, N, N, N, N), "")),
     "s": ("m x alpha", "s_#",
-        _formula("tooth thickness of a ring", lambda m, x, a: m * (pi / 2 - 2 * x * np.tan(a)), (N, N, A),
-                 marked("Tooth thickness of the ring on the reference circle s = m(π/2 − 2x·tan α): {name} = {0} × (π/2 "
-                        "− 2 × {1} × tan {2}) = {value} mm."))),
+        _formula("tooth thickness of a ring", lambda m, x, a: m * (pi / 2 - 2 * x * np.tan(a)), (N, N, A), "")),
     "sa": ("ra s r inv_alpha alpha_a", "s_{a#}",
-        _formula("tooth thickness of a ring at the "
-        "tip", lambda ra, s, r, inv, a: 2 * ra * (s / (2 * r) - inv + involute(a)), (N, N, N, N, A),
-                 marked("Tooth thickness of the ring at the tip s_a = 2r_a(s/2r − inv α + inv α_a): {name} = 2 × {0} × ({1}/(2 × "
-                        "{2}) − {3} + inv {4}) = {value} mm."))),
+        _formula("tooth thickness of a ring at the tip",
+                 lambda ra, s, r, inv, a: 2 * ra * (s / (2 * r) - inv + involute(a)), (N, N, N, N, A), "")),
     "rho_p": ("N1N2 rho_a'", "ρ_{p#}",
         _formula("radius of curvature of the ring at the last contact", lambda line, other: line + other, (N, N),
-                 marked("Radius of curvature of the ring's profile at its last point of contact ρ_p2 = N_1N_2 + ρ_a1: {name} = "
-                        "{0} + {1} = {value} mm."))),
+                 marked("Radius of curvature of the ring's profile at its last point of contact: {formula}."))),
     "psi_b": ("s r inv_alpha z", "ψ_{b#}",
         _formula("half of the ring's space at the base circle", lambda s, r, inv, z: pi / z - s / (2 * r) + inv, (N, N, N, N),
-                 marked("Half the angular width of the ring's space on the base circle ψ_b = π/z − s/2r + inv α: {name} = "
-                        "π/{3} − {0}/(2 × {1}) + {2} = {value}."), "rad")),
+                 marked("Half the angular width of the ring's space on the base circle: {formula}."), "rad")),
     "rho_f": ("m rb rf psi_b rho_p", "ρ_{f#}",
         _formula("fillet radius of a ring", lambda m, rb, rf, half, low: gf.ring_fillet_radius(gf.FILLET * m, rb, rf, half, low),
                  (N,) * 5,

@@ -11,8 +11,7 @@ import numpy.typing as npt
 
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.scale import Scale, fit_standard
-from tmm_sheets.construction.step import Plan, Reported, Rule, Step
-from tmm_sheets.construction.tables import planned, record
+from tmm_sheets.construction.step import Plan, Reported, Rule, Step, planned, record
 from tmm_sheets.methods.gears import gear_engagement as ge
 from tmm_sheets.methods.gears import rack
 from tmm_sheets.methods.gears.gear_engagement import on_normal, unrolled
@@ -54,8 +53,10 @@ class GearPair(PairGeometry):
 
     @cached_property
     def sliding(self) -> Plan:
-        """Speeds and specific sliding at the manual's divisions: 3 parts of P_wN1, 4 of P_wN2."""
-        return ge.sliding_plan(self, self.engagement)
+        """Speeds and specific sliding at the manual's divisions: 3 parts of P_wN1, 4 of P_wN2, from N1 (division 0) on."""
+        plan = Plan("gear-sliding", tr("Specific sliding"), "m", tuple(map(str, range(8))))
+        return ge.sliding_plan(plan, self, self.engagement, np.array([3.0, 2, 1, 0, 0, 0, 0, 0]) / 3,
+                               np.array([0.0, 0, 0, 0, 1, 2, 3, 4]) / 4)
 
     @cached_property
     def _teeth(self) -> tuple[Plan, Plan]:
@@ -126,7 +127,8 @@ class GearPair(PairGeometry):
 
     def parts(self, wheel: GearWheel, scale: Scale | None = None) -> int:
         """Number of equal parts of P_wN when drawn with this scale factor (that of the picture by default)."""
-        return ge.parts_of_pole_segment((scale or self.picture_scale()).mm(wheel.t_pole))
+        drawn: float = (scale or self.picture_scale()).mm(wheel.t_pole)
+        return max(2, round(drawn / 20))  # 15..25 mm each, never fewer than two
 
     def divisions(self, wheel: GearWheel, scale: Scale | None = None) -> range:
         """Numbers of the divisions of :meth:`involute`, from 0 at the pole to the last beyond N."""
@@ -164,7 +166,9 @@ class GearPair(PairGeometry):
 
     def sliding_curve(self, share: Any) -> Plan:
         """Speeds and sliding at any points of the line: -1 at N1, 0 at the pole, 1 at the last point."""
-        return ge.sliding_between(self, self.engagement, share)
+        share = np.asarray(share, dtype=float)
+        plan = Plan("gear-sliding-between", tr("Specific sliding between the divisions"), "m", tuple(f"{v:g}" for v in share))
+        return ge.sliding_plan(plan, self, self.engagement, np.maximum(-share, 0), np.maximum(share, 0))
 
     @cached_property
     def smooth_sliding(self) -> Plan:
@@ -268,7 +272,8 @@ def _flank(o: Any, foot: Any, pole: Any, centre: Any, begin: Any, end: Any, low:
     """Flank from the root circle: a fillet about a centre, then the involute through ``pole``, between two unrolled lengths."""
     # Even steps of t**2 are even steps of the angle along the involute's arc length.
     involute = unrolled(o, foot, pole, np.sqrt(np.linspace(low**2, tip**2, INVOLUTE)))
-    fillet = _arc_between(centre, begin, end, INVOLUTE // 3)
+    start = begin - centre
+    fillet = centre + start * np.exp(1j * np.angle((end - centre) / start) * np.linspace(0, 1, INVOLUTE // 3 + 1))
     # Its end is the first point of the involute; a radial piece keeps both ends.
     return np.concatenate([fillet[:-1] if low > 0 else fillet, involute])
 
@@ -314,12 +319,6 @@ def tooth_shape(wheel: GearWheel, side: int, engagement: Plan, tooth: Plan, flan
     """Shape of the tooth recorded in ``tooth`` with the flank of that step."""
     return ToothShape(centre=complex(engagement[f"O{wheel.number}"].value), axis=complex(tooth["axis"].value), side=side,
                       pitch=wheel.tau, root=wheel.rf, tip=wheel.ra, flank=flank.value, step=flank)
-
-
-def _arc_between(centre: complex, begin: complex, end: complex, n: int) -> Points:
-    start = begin - centre
-    turn = np.angle((end - centre) / start)
-    return np.asarray(centre + start * np.exp(1j * turn * np.linspace(0, 1, n + 1)))
 
 
 def strip(wheel: GearWheel, engagement: Plan, width: float, points: int = 24) -> Points:

@@ -22,8 +22,7 @@ import numpy.typing as npt
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.expression import Complex, Directions, Points, Reals, primitive
 from tmm_sheets.construction.rules import ALONG, GIVEN, GIVEN_LENGTH, OFFSET
-from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step
-from tmm_sheets.construction.tables import StepTable, record
+from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step, StepTable, record
 from tmm_sheets.words import marked, tr
 
 

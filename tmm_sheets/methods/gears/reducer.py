@@ -7,7 +7,7 @@ Wheels 1 to 4 of the formulas are those of one planetary stage (a single row: 1,
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from math import gcd, pi
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.step import Given, GivenNumber, Plan, Reported, Rule, Step
-from tmm_sheets.construction.tables import StepTable, planned, record
+from tmm_sheets.construction.step import Given, GivenNumber, Plan, Reported, Rule, Step, StepTable, planned, record
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears import planetary
 from tmm_sheets.methods.gears.planetary import (
@@ -30,7 +29,7 @@ from tmm_sheets.methods.gears.planetary import (
     stage_numbers,
 )
 from tmm_sheets.methods.gears.train import Train
-from tmm_sheets.methods.gears.train_steps import FRAME, INNER_RATIO, TEETH, Mesh, N, TrainData, said_with_sign
+from tmm_sheets.methods.gears.train_steps import FRAME, INNER_RATIO, TEETH, Mesh, N, TrainData
 from tmm_sheets.numbers import number
 from tmm_sheets.words import marked, tell, tr
 
@@ -54,27 +53,15 @@ def common_divisor(a: float, b: float) -> int:
 ASKED = _formula("ratio asked for", lambda u: u, 1, marked("Ratio asked for {name} = {value}."))
 ASKED_BY_SPEEDS = _formula("ratio of the speeds asked for", lambda one, two: one / two, 2,
                            marked("Ratio asked for ω_in/ω_out: {name} = {0}/{1} = {value}."))
-STAGE_RATIO = {
-    "sun": _formula("ratio of a stage driven by the sun", lambda i: planetary.stage_ratio(i, "sun"), 1,
-                    marked("Ratio from the sun to the carrier, 1 − i: {name} = 1 − {0} = {value}.")),
-    "ring": _formula("ratio of a stage driven by the ring", lambda i: planetary.stage_ratio(i, "ring"), 1,
-                     marked("Ratio from the ring to the carrier, 1 − 1/i: {name} = 1 − 1/{0} = {value}.")),
-    "carrier": _formula("ratio of a stage driven by the carrier", lambda i: planetary.stage_ratio(i, "carrier"), 1,
-                        marked("Ratio from the carrier to the central wheel, 1/(1 − i): {name} = 1/(1 − {0}) = {value}.")),
-}
-STAGE_EFFICIENCY = {
-    case: _formula(f"efficiency of a stage driven by the {case}", planetary.EFFICIENCY[case], 2, said) for case, said in (
-        ("sun", marked("Efficiency of a stage (1 + η_0|i|)/(1 + |i|), i = {0}, η_0 = {1}: {name} = {value}.")),
-        ("ring", marked("Efficiency of a stage (1 + η_0/|i|)/(1 + 1/|i|), i = {0}, η_0 = {1}: {name} = {value}.")),
-        ("carrier, i < 1", marked("Efficiency of a stage (1 − i)/(1 − iη_0) for i < 1, i = {0}, η_0 = {1}: {name} = {value}.")),
-        ("carrier, i > 1", marked("Efficiency of a stage η_0(i − 1)/(i − η_0) for i > 1, i = {0}, η_0 = {1}: {name} = {value}.")))
-}
+STAGE_RATIO = {driver: _formula(f"ratio of a stage driven by the {driver}", partial(planetary.stage_ratio, driver=driver), 1, "")
+               for driver in ("sun", "ring", "carrier")}
+STAGE_EFFICIENCY = {case: _formula(f"efficiency of a stage driven by the {case}", compute, 2, "")
+                    for case, compute in planetary.EFFICIENCY.items()}
 SIDE_OF_COAXIALITY = _formula("side of the coaxiality condition", lambda s, z1, z2: z1 + s * z2, 3,
-                              marked("One side of the condition of coaxiality, in teeth: {name} = {1} ± {2} = {value}."))
+                              marked("One side of the condition of coaxiality, in teeth: {formula}."))
 ASSEMBLY = _formula(
     "assembly", lambda s, q, z1, z2, z3, z4: (z1 * z3 - s * z2 * z4) / (q * common_divisor(z2, z3)), 6,
-    marked("Condition of assembly: the quotient (z_1z_3 ∓ z_2z_4)/(q·gcd(z_2, z_3)) must be a whole number: ({2} × {4} ∓ {3} × "
-           "{5})/({1} × gcd({3}; {4})) = {value}."))
+    marked("Condition of assembly, the quotient must be a whole number: {formula}."))
 LEAST_RING = _formula("least ring without interference", planetary.least_ring, 2,
                       marked("Least number of teeth of a ring without interference with the planet z = {0} (0: there is none): "
                              "{name} = {value}."))
@@ -82,25 +69,20 @@ LEAST_RING = _formula("least ring without interference", planetary.least_ring, 2
 
 RATIOS: StepTable = {
     "u_simple": ("wheel pinion", lambda: tr("u_{s}"),
-        _formula("ratio of the simple stage", lambda wheel, pinion: wheel / pinion, 2,
-            marked("Ratio of the simple stage: {name} = {0}/{1} = {value}."))),
+        _formula("ratio of the simple stage", lambda wheel, pinion: wheel / pinion, 2, "")),
     "u_planetary": ("u_stage stages", lambda: tr("u_{pl}"),
         _formula("ratio of the planetary stages", lambda u, stages: u**stages, 2,
             marked("Ratio of the planetary part with its sign (stages: {1}): {name} = {value}."))),
     "u": ("u_planetary u_simple", "",
-        _formula("ratio of the reducer", lambda planetary, simple: np.abs(planetary) * simple, 2,
-            marked("Ratio of the reducer without its sign: {name} = |{0}| × {1} = {value}."))),
-    "u_deviation": ("u u_asked", "Δu", _formula("deviation of the ratio", lambda u, asked: u / asked - 1, 2,
-            marked("Relative deviation from the ratio asked for: {name} = {0}/{1} − 1 = {value}."))),
+        _formula("ratio of the reducer", lambda planetary, simple: np.abs(planetary) * simple, 2, "")),
+    "u_deviation": ("u u_asked", "Δu", _formula("deviation of the ratio", lambda u, asked: u / asked - 1, 2, "")),
     "eta_pair": ("pair_efficiency", lambda: tr("η_{p}"),
         _formula("efficiency of a pair", lambda eta: eta, 1, marked("Efficiency of one pair of wheels {name} = {value}."))),
-    "eta_0": ("eta_pair", "η_0", _formula("efficiency with the carrier stopped", lambda eta: eta**2, 1,
-            marked("Efficiency of both pairs of the train with the carrier held: {name} = {0}² = {value}."))),
+    "eta_0": ("eta_pair", "η_0", _formula("efficiency with the carrier stopped", lambda eta: eta**2, 1, "")),
     "eta_planetary": ("eta_stage stages", lambda: tr("η_{pl}"),
         _formula("efficiency of the planetary stages", lambda eta, stages: eta**stages, 2,
             marked("Efficiency of the planetary part (stages: {1}): {name} = {value}."))),
-    "eta": ("eta_planetary eta_pair", "η", _formula("efficiency of the reducer", lambda planetary, pair: planetary * pair, 2,
-            marked("Efficiency of the reducer: {name} = {0} × {1} = {value}."))),
+    "eta": ("eta_planetary eta_pair", "η", _formula("efficiency of the reducer", lambda planetary, pair: planetary * pair, 2, "")),
 }
 """Ratio and efficiency of a reducer with a simple stage."""
 WITHOUT_SIMPLE: StepTable = {
@@ -138,11 +120,11 @@ def ratio_plan(data: ReducerTable, teeth: ToothSet, k: int, criterion: str, chos
     if chosen is not None:
         asked = chosen["u_asked"]
     elif data.ratio is not None:
-        asked = plan.add("u_asked", ASKED, GivenNumber(data.ratio, "reducer.ratio"), symbol="u")
+        asked = plan.add("u_asked", ASKED, GivenNumber(data.ratio, "reducer.ratio"), symbol=tr("u_{a}"))
     else:
         speeds = [GivenNumber(v, f"reducer.{name}", unit="rad/s") for name in ("input_speed", "output_speed")
                   if (v := getattr(data, name)) is not None]
-        asked = plan.add("u_asked", ASKED_BY_SPEEDS, speeds[0], speeds[-1], symbol="u")
+        asked = plan.add("u_asked", ASKED_BY_SPEEDS, speeds[0], speeds[-1], symbol=tr("u_{a}"))
     searched = False
     for name, z in named_teeth(data, teeth).items():
         say = tr("Number of teeth {name} = {value} is given.")
@@ -169,27 +151,12 @@ def ratio_plan(data: ReducerTable, teeth: ToothSet, k: int, criterion: str, chos
 
     if simple:
         add("u_simple")
-    plan.add("i14", INNER_RATIO, sign, *(plan[f"z{n}"] for n in stage_numbers(data, 0)), symbol="i_{14}^{H}",
-             say=said_with_sign(INNER_RATIO, sign))
+    plan.add("i14", INNER_RATIO, sign, *(plan[f"z{n}"] for n in stage_numbers(data, 0)), symbol="i_{14}^{H}")
     add("u_stage u_planetary u u_deviation")
     if chosen is None:
         add("eta_pair eta_0")
     add("eta_stage eta_planetary eta")
     return plan
-
-
-def tiers_of(data: ReducerTable) -> tuple[float, ...]:
-    """Steps of the deviation of the ratio, the first that has any sets decides: none beyond what is permitted."""
-    return *(t for t in TIERS if t < data.tolerance), data.tolerance
-
-
-def criterion_of(data: ReducerTable, sets: Sequence[ToothSet]) -> str:
-    """By what the tooth numbers were chosen, and the sets that came next."""
-    tiers = ", ".join(number(100 * t) for t in tiers_of(data))
-    told = "; ".join(", ".join(f"{name} = {z}" for name, z in named_teeth(data, t).items()) for t in sets)
-    return tr("among the sets that fulfil coaxiality, assembly and neighbourhood, the least height of the reducer in the first of "
-              "the steps {tiers} % of the deviation of the ratio that has any sets; the best sets in order: {sets}"
-              ).format(tiers=tiers, sets=told)
 
 
 class Interference(NamedTuple):
@@ -254,8 +221,8 @@ class Reducer(Train):
 
     @property
     def tiers(self) -> tuple[float, ...]:
-        """Steps of the deviation of the ratio by which the tooth numbers were chosen, as shares."""
-        return tiers_of(self.table)
+        """Steps of the deviation of the ratio, as shares; the first that has any sets decides: none beyond what is permitted."""
+        return *(t for t in TIERS if t < self.table.tolerance), self.table.tolerance
 
     @property
     def plans(self) -> dict[str, Plan]:
@@ -265,7 +232,12 @@ class Reducer(Train):
     @cached_property
     def sets(self) -> tuple[Plan, ...]:
         """Tooth numbers, ratio and efficiency of the chosen set and of the runners-up."""
-        criterion = criterion_of(self.table, (self.chosen, *self.runners_up))
+        tiers = ", ".join(number(100 * t) for t in self.tiers)
+        told = "; ".join(", ".join(f"{name} = {z}" for name, z in named_teeth(self.table, t).items())
+                         for t in (self.chosen, *self.runners_up))
+        criterion = tr("among the sets that fulfil coaxiality, assembly and neighbourhood, the least height of the reducer in the "
+                       "first of the steps {tiers} % of the deviation of the ratio that has any sets; the best sets in order: "
+                       "{sets}").format(tiers=tiers, sets=told)
         chosen = ratio_plan(self.table, self.chosen, 0, criterion)
         return chosen, *(ratio_plan(self.table, t, k, criterion, chosen) for k, t in enumerate(self.runners_up, 1))
 
@@ -278,10 +250,10 @@ class Reducer(Train):
                  "addendum": GivenNumber(data.addendum, "reducer.addendum"), "z_2": z[1], "z_3": z[2]}
         record(plan, "q ha", CONDITIONS, given=given)
         for i, (side, a, b) in enumerate((("left", 0, 1), ("right", 3, 2))):
-            plan.add(f"coaxiality_{side}", SIDE_OF_COAXIALITY, s[i], z[a], z[b], say=said_with_sign(SIDE_OF_COAXIALITY, s[i]),
-                     symbol=f"z_{a + 1} {'+' if s[i] > 0 else '−'} z_{b + 1}")
+            plan.add(f"coaxiality_{side}", SIDE_OF_COAXIALITY, s[i], z[a], z[b],
+                     symbol=f"z_{{{numbers[a]}}} {'+' if s[i] > 0 else '−'} z_{{{numbers[b]}}}")
         record(plan, "coaxiality", CONDITIONS)
-        plan.add("assembly", ASSEMBLY, s[0] * s[1], plan["q"], *z, say=said_with_sign(ASSEMBLY, s[0] * s[1]))
+        plan.add("assembly", ASSEMBLY, s[0] * s[1], plan["q"], *z, symbol="E")
         record(plan, "between width neighbourhood", CONDITIONS, given=given)
         for satellite, ring in planetary.internal_pairs(s):
             plan.add(f"least_z{numbers[ring]}", LEAST_RING, z[satellite], plan["ha"], symbol=f"z_{{{numbers[ring]}min}}")

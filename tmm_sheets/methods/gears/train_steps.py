@@ -22,36 +22,31 @@ FRAME = ""
 """The carrier of a pair whose axes stand still."""
 
 N: Kind = "number"
+BY_WILLIS = marked("Speed of rotation by the Willis formula: {formula}.")
 TEETH = Rule("number of teeth", lambda z: z, (N,), N, marked("Number of teeth {name} = {value}."), source="003, 2.1–2.4")
 INNER_RATIO = Rule(
-    "ratio with the carrier stopped", lambda s, z1, z2, z3, z4: planetary.inner_ratio((s, 1), (z1, z2, z3, z4)), (N,) * 5, N,
-    marked("Ratio of the train with the carrier held ±z_2z_4/(z_1z_3): {name} = ±{2} × {4}/({1} × {3}) = {value}."),
+    "ratio with the carrier stopped", lambda s, z1, z2, z3, z4: planetary.inner_ratio((s, 1), (z1, z2, z3, z4)), (N,) * 5, N, "",
     source="003, 2.1–2.4")
 STANDS = Rule("a wheel that stands still", lambda: 0.0, (), N, marked("The wheel stands still: {name} = 0."), unit="1/min")
 SAME_SHAFT = Rule("speed on the same shaft", lambda n: n, (N,), N, marked("On the same shaft: {name} = {value} rpm."), unit="1/min")
 BLOCK = Rule("speed of the satellites", lambda h, s, n, z1, z2: h - s * (n - h) * z1 / z2, (N,) * 5, N,
-             marked("Speed of rotation by the Willis formula n_H ∓ (n_1 − n_H)z_1/z_2: {name} = {0} ∓ ({2} − {0}) × {3}/{4} = "
-                    "{value} rpm."), unit="1/min")
+             BY_WILLIS, unit="1/min")
 GIVEN_SPEED = Rule("given speed", lambda w: w * 30 / pi, (N,), N, marked("Given speed of rotation {name} = {value} "
                                                                          "rpm."), unit="1/min")
 PAIR = Rule("speed behind a pair", lambda s, n, z1, z2: -s * n * z1 / z2, (N,) * 4, N,
-            marked("Speed of rotation of the mating wheel: {name} = ∓{1} × {2}/{3} = {value} rpm."), unit="1/min")
+            marked("Speed of rotation of the mating wheel: {formula}."), unit="1/min")
 CARRIER = Rule("speed of a carrier from its mesh", lambda s, nc, zc, np_, zp: (zc * nc + s * zp * np_) / (zc + s * zp), (N,) * 5, N,
-               marked("Speed of rotation of the carrier by the Willis formula (z_cn_c ± z_pn_p)/(z_c ± z_p): {name} = ({2} × {1} "
-                      "± {4} × {3})/({2} ± {4}) = {value} rpm."), unit="1/min")
+               BY_WILLIS, unit="1/min")
 DIFFERENTIAL = Rule("speed of a carrier between two central wheels", lambda one, two, i: (one - i * two) / (1 - i), (N,) * 3, N,
-                    marked("Speed of rotation of the carrier by the Willis formula (n_1 − i·n_2)/(1 − i): {name} = ({0} − {2} × "
-                           "{1})/(1 − {2}) = {value} rpm."), unit="1/min")
+                    BY_WILLIS, unit="1/min")
 ACROSS = Rule("speed of a central wheel across its carrier", lambda h, two, i: h * (1 - i) + i * two, (N,) * 3, N,
-              marked("Speed of rotation of the central wheel by the Willis formula n_H(1 − i) + i·n_2: {name} = {0} × (1 − {2}) + "
-                     "{2} × {1} = {value} rpm."), unit="1/min")
-DIAMETER = Rule("pitch diameter", lambda z, m: z * m, (N, N), N,
-                marked("Pitch diameter (there are no shifts) d = mz: {name} = {1} × {0} = {value} mm."), unit="mm")
+              BY_WILLIS, unit="1/min")
+DIAMETER = Rule("pitch diameter", lambda z, m: m * z, (N, N), N,
+                marked("Pitch diameter (there are no shifts): {formula}."), unit="mm")
 DISTANCE = Rule("distance of a stage's axes", lambda m, s, zc, zp: m * (zc + s * zp) / 2, (N,) * 4, N,
-                marked("Distance of the axes m(z_c ± z_p)/2: {name} = {0} × ({2} ± {3})/2 = {value} mm."), unit="mm")
-CENTRAL_PITCH = Rule("pitch diameter of a central wheel", lambda a, s, zc, zp: 2 * a * zc / (zc + s * zp), (N,) * 4, N,
-                     marked("Pitch diameter at this distance 2az_c/(z_c ± z_p): {name} = 2 × {0} × {2}/({2} ± {3}) = {value} mm."),
-                     unit="mm")
+                marked("Distance of the axes: {formula}."), unit="mm")
+WORKING_PITCH = Rule("working pitch diameter", lambda a, z, s, zc, zp: 2 * a * z / (zc + s * zp), (N,) * 5, N,
+                     marked("Pitch diameter at this distance: {formula}."), unit="mm")
 
 
 @primitive("equations of Willis together", "real")
@@ -164,11 +159,6 @@ def distance_of(train: Any, mesh: Mesh) -> str:
     return f"a_{mesh.carrier}" if alone else f"a_{first.central}-{first.planet}"
 
 
-def said_with_sign(rule: Rule, sign: int) -> str:
-    """The rule's sentence with the sign of its pairs."""
-    return tr(rule.wording).replace("±", "+" if sign > 0 else "−").replace("∓", "−" if sign > 0 else "+")
-
-
 class Kinematics:
     """Records the plan of a train's numbers."""
 
@@ -189,53 +179,53 @@ class Kinematics:
         return one, two
 
     def diameters(self) -> None:
-        """Distances of the axes and pitch diameters: of both wheels, or with shifts of the central one in the mesh."""
+        """Distances of the axes and pitch diameters: of both wheels, or with shifts of both in the mesh."""
         plan = self.plan
         plan.add("m", MODULE, GivenNumber(self.data.module, f"{self.data.part}.module", "m", "m"))
         for m in self.train.meshes:
-            module = plan["m"] if m.module is None else plan.once("m_simple", MODULE, m.module, symbol=tr("m_{s}"))
+            module = plan["m"] if m.module is None else plan.add_once("m_simple", MODULE, m.module, symbol=tr("m_{s}"))
             name = distance_of(self.train, m)
             if name not in plan:
-                plan.add(name, DISTANCE, module, float(m.sign), *self.teeth(m), say=said_with_sign(DISTANCE, m.sign),
+                plan.add(name, DISTANCE, module, float(m.sign), *self.teeth(m),
                          symbol=f"a_{{{name.removeprefix('a_')}}}")
-            if self.train.teeth(m) != self.train.teeth(self.train.stage(m)[0]):
-                plan.add(f"d{m.central}-{m.planet}", CENTRAL_PITCH, plan[name], float(m.sign), *self.teeth(m),
-                         say=said_with_sign(CENTRAL_PITCH, m.sign), symbol=f"d_{{{m.central}}}")
-                continue
-            for wheel, z in zip((m.central, m.planet), self.teeth(m), strict=True):
-                plan.once(f"d{wheel}", DIAMETER, z, module, symbol=f"d_{{{wheel}}}")
+            shifted = self.train.teeth(m) != self.train.teeth(self.train.stage(m)[0])
+            for wheel, mate, z in zip((m.central, m.planet), (m.planet, m.central), self.teeth(m), strict=True):
+                if shifted:  # it rolls on another circle in each of its meshes
+                    plan.add(f"d{wheel}-{mate}", WORKING_PITCH, plan[name], z, float(m.sign), *self.teeth(m),
+                             symbol=f"d_{{w{wheel}–{mate}}}")
+                else:
+                    plan.add_once(f"d{wheel}", DIAMETER, z, module, symbol=f"d_{{{wheel}}}")
 
     def speed(self, found: Found) -> None:
         """Speed of a wheel or carrier as it is found."""
         name, plan, data = found.name, self.plan, self.data
         rule: Rule = SAME_SHAFT
         args: tuple[Any, ...] = (plan[f"n{found.shaft}"],) if found.shaft else ()
-        say: str | None = None
         if name in data.speeds:
             given = data.speeds[name]
             rule, args = (STANDS, ()) if given is None else (GIVEN_SPEED, (given,))
         elif len(found.meshes) == 2:
             rule, args = self.across(name, *found.meshes)
         elif found.meshes:
-            rule, args, say = self.willis(name, found.meshes[0])
+            rule, args = self.willis(name, found.meshes[0])
         elif not found.shaft:
             rule, args = TOGETHER, self.all(name)
-        plan.add(f"n{name}", rule, *args, symbol=f"n_{{{name}}}", say=say)
+        plan.add(f"n{name}", rule, *args, symbol=f"n_{{{name}}}")
 
-    def willis(self, name: str, m: Mesh) -> tuple[Rule, tuple[Any, ...], str]:
-        """Rule, arguments and sentence for the one unknown of a mesh."""
+    def willis(self, name: str, m: Mesh) -> tuple[Rule, tuple[Any, ...]]:
+        """Rule and arguments for the one unknown of a mesh."""
         plan, (zc, zp) = self.plan, self.teeth(m)
         if name == m.carrier:
-            return CARRIER, (float(m.sign), plan[f"n{m.central}"], zc, plan[f"n{m.planet}"], zp), said_with_sign(CARRIER, m.sign)
+            return CARRIER, (float(m.sign), plan[f"n{m.central}"], zc, plan[f"n{m.planet}"], zp)
         other, z = (m.planet, (zp, zc)) if name == m.central else (m.central, (zc, zp))
         rule, args = (BLOCK, (plan[f"n{m.carrier}"],)) if m.carrier else (PAIR, ())
-        return rule, (*args, float(m.sign), plan[f"n{other}"], *z), said_with_sign(rule, m.sign)
+        return rule, (*args, float(m.sign), plan[f"n{other}"], *z)
 
     def across(self, name: str, one: Mesh, two: Mesh) -> tuple[Rule, tuple[Any, ...]]:
         """Rule and arguments for a carrier between two central wheels, or for the first of these."""
         (z1, p1), (z2, p2), sign = self.teeth(one), self.teeth(two), one.sign * two.sign
         ratio = self.data.known.get(key := f"i{one.central},{two.central}") or self.plan.add(
-            key, INNER_RATIO, float(sign), z1, p1, p2, z2, say=said_with_sign(INNER_RATIO, sign),
+            key, INNER_RATIO, float(sign), z1, p1, p2, z2,
             symbol=f"i_{{{one.central},{two.central}}}^{{{one.carrier}}}")
         rule, other = (DIFFERENTIAL, one.central) if name == one.carrier else (ACROSS, one.carrier)
         return rule, (self.plan[f"n{other}"], self.plan[f"n{two.central}"], ratio)

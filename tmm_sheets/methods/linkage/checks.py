@@ -15,11 +15,10 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups.contexts import SWEEP, TOUCH, AssemblyLimit
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle
-from tmm_sheets.methods.linkage.positions import Positions, passages
-from tmm_sheets.methods.linkage.velocities import Watched
+from tmm_sheets.methods.linkage.motion import Watched
+from tmm_sheets.methods.linkage.positions import Passages, Positions
 from tmm_sheets.numbers import in_a_row, of_reader
-from tmm_sheets.remarks import Remark
-from tmm_sheets.words import marked, marked_n, tell, tell_n
+from tmm_sheets.words import Remark, marked, marked_n, tell, tell_n
 
 ASSEMBLY = "assembly"
 CLOSE = 0.02
@@ -100,12 +99,12 @@ def check_assembly(mechanism: Mechanism, cycle: Cycle) -> tuple[DeadPosition, ..
         raise CannotBuild(tell("{point} cannot be constructed at positions {labels}").format(point=name, labels=", ".join(labels)))
     passed: dict[tuple[str, bool], list[float]] = {}
     for i, (g, limit) in enumerate(limits):
-        changes = np.degrees(passages(mechanism).angles(g))
+        changes = np.degrees(Passages(mechanism).angles(g))
         for angle in search.dead(i) if limit.measured else ():
             change = bool(np.any(np.abs(np.mod(changes - angle + 180.0, 360.0) - 180.0) < CHANGE))
             if not (change and g.follow):
                 passed.setdefault(("-".join(g.links), change), []).append(angle)
-    closed = {"-".join(g.links): cycle.swings or len(passages(mechanism).angles(g)) % 2 == 0 for g in mechanism.groups}
+    closed = {"-".join(g.links): cycle.swings or len(Passages(mechanism).angles(g)) % 2 == 0 for g in mechanism.groups}
     return tuple(DeadPosition(group, tuple(sorted(angles)), change and closed[group]) for (group, change), angles in passed.items())
 
 
@@ -122,7 +121,7 @@ def check_followed(mechanism: Mechanism, cycle: Cycle) -> None:
         when a group passes an odd number of change points.
     """
     for g in mechanism.groups:
-        angles = passages(mechanism).angles(g) if g.follow and not cycle.swings else ()
+        angles = Passages(mechanism).angles(g) if g.follow and not cycle.swings else ()
         if len(angles) % 2:
             message = tell_n('group {group} with branch = "follow" passes a change point at crank angle {angles} deg: after a turn '
                              "of the crank it stands on the other side",

@@ -25,9 +25,8 @@ from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.linkage.accelerations import Accelerations
+    from tmm_sheets.methods.linkage.motion import Accelerations, MotionPolygon, Velocities
     from tmm_sheets.methods.linkage.positions import Positions
-    from tmm_sheets.methods.linkage.velocities import MotionPolygon, Velocities
 
 EQUAL_STROKE = Rule("equal parts of a stroke", lambda start, end, parts, number: start + (end - start) / parts * number,
                     ("ordinate", "ordinate", "number", "number"), "ordinate",

@@ -23,8 +23,8 @@ from tmm_sheets.construction.step import FoundNumber, Given, Plan, Rule, SearchC
 from tmm_sheets.mechanism.groups.contexts import OPPOSITE_COUPLE, ForcePlan, Held, Load, Role, TangentialPart
 from tmm_sheets.mechanism.groups.triad import BY_MOMENTS
 from tmm_sheets.mechanism.model import Drive, StructuralGroup, lettered
-from tmm_sheets.methods.linkage.accelerations import Accelerations
-from tmm_sheets.methods.linkage.positions import CHOICE, SEARCHED, PassagePlace, Positions, alone, beside, passages, position_plan
+from tmm_sheets.methods.linkage.motion import Accelerations
+from tmm_sheets.methods.linkage.positions import CHOICE, SEARCHED, PassagePlace, Passages, Positions, alone, beside, position_plan
 from tmm_sheets.numbers import Sizes
 from tmm_sheets.words import marked, tr
 
@@ -226,7 +226,7 @@ class Kinetostatics:
 
     def across(self, name: str, u: Step, symbol: str = "") -> Step:
         """Direction across another, drawn once."""
-        return self.plan.once(f"⟂{name}", rules.TURN, u, symbol=symbol)
+        return self.plan.add_once(f"⟂{name}", rules.TURN, u, symbol=symbol)
 
     def normal(self, j: str, other: str, name: str, u: Step, symbol: str = "") -> Step:
         """Direction of a sliding pair's reaction on link ``j``: across the guide, with friction deviated from there."""
@@ -335,7 +335,7 @@ class GearForce:
 
 
 PITCH_RADIUS = Rule("radius of the pitch circle", lambda module, teeth: module * teeth / 2, ("length", "number"), "length",
-                    marked("Radius of the reference circle {name} = m·z/2 = {value}."))
+                    marked("Radius of the reference circle: {formula}."))
 
 
 def _line_of_action(sense: Any, mate: Any, angle: Any) -> Any:
@@ -517,7 +517,7 @@ def limits_of_forces(pos: Positions, acc: Accelerations, loads: dict[str, list[L
     Lines of a group's plan fall together there, and its reactions grow beyond all bounds unless nothing loads it; what they do to
     the crank has a limit. The loads stay as they are at the position: only the links move to both sides of it.
     """
-    passing, phi = passages(pos.mechanism), np.atleast_1d(np.asarray(pos.phi, dtype=float))
+    passing, phi = Passages(pos.mechanism), np.atleast_1d(np.asarray(pos.phi, dtype=float))
     rows: dict[str, Floats] = {}
     for angle in passing.every():
         for place in passing.places(angle, phi, passing.together(angle), FORCE_ZONE):

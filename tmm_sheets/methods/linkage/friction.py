@@ -14,9 +14,8 @@ from tmm_sheets.construction.step import Given, Helper, Plan, Rule, SearchCount,
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups.contexts import OPPOSITE_COUPLE
 from tmm_sheets.mechanism.model import Mechanism, Pair
-from tmm_sheets.methods.linkage.accelerations import Sliding, ordered
 from tmm_sheets.methods.linkage.forces import Kinetostatics
-from tmm_sheets.methods.linkage.velocities import Velocities
+from tmm_sheets.methods.linkage.motion import Sliding, Velocities, ordered
 from tmm_sheets.words import marked, tell, tr
 
 _SOURCE = "000, 4"

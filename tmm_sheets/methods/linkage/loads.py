@@ -10,9 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, reduce
 from itertools import pairwise
 from math import ceil, floor
+from operator import add, mul
 from typing import Any, NoReturn
 
 import numpy as np
@@ -24,8 +25,8 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
 from tmm_sheets.methods.linkage.cycle import SWEEP, TURN, Cycle, Run, Strokes, in_strokes, over_cycle, root, runs_of
+from tmm_sheets.methods.linkage.motion import Watched
 from tmm_sheets.methods.linkage.positions import Positions
-from tmm_sheets.methods.linkage.velocities import Watched
 from tmm_sheets.words import marked, tell
 
 STROKES = "strokes of forces"
@@ -410,16 +411,10 @@ FORCE = Rule("given force", lambda value, u: value * u, ("number", "direction"),
 MOMENT = Rule("given moment", lambda value: value, ("number",), "number", marked("Moment {name} = {value} N·m."), unit="N*m")
 
 
-def _signed_sum(*terms: Any) -> Any:
-    total = terms[0] * terms[1]
-    for sign, value in zip(terms[2::2], terms[3::2], strict=True):
-        total = total + sign * value
-    return total
-
-
 STEADY = Rule("the same all the time", lambda value, turned, sign=1.0: sign * value + 0.0 * turned, ("number", "angle"), "number",
               "{name} = {value}.", exact=True)
-SIGNED_SUM = Rule("values by stroke", _signed_sum, ("number", "number"), "number", "{name} = {value}.", exact=True)
+SIGNED_SUM = Rule("values by stroke", lambda *terms: reduce(add, map(mul, terms[::2], terms[1::2])), ("number", "number"), "number",
+                  "{name} = {value}.", exact=True)
 PISTON = Rule("force of a pressure on a piston", lambda p, bore, ambient: np.pi * bore**2 / 4 * (p - ambient),
               ("number", "length", "number"), "number", "{name} = π·D²/4·(p − p_0).", unit="N", exact=True)
 OPPOSED = Rule("ordinates with a sign", lambda y, sign: sign * y, ("number", "number"), "number", "{name} = {value}.", exact=True)

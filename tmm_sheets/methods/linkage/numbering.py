@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.expression import Floats, primitive
-from tmm_sheets.construction.step import Given, GivenNumber, Plan, Rule, Step
+from tmm_sheets.construction.step import Given, GivenNumber, Plan, Rule, Step, StepTable, record
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
@@ -28,8 +28,8 @@ from tmm_sheets.methods.linkage.cycle import (
     runs_of,
     working_stroke,
 )
-from tmm_sheets.methods.linkage.positions import passages
-from tmm_sheets.methods.linkage.velocities import OfAngles, Watched
+from tmm_sheets.methods.linkage.motion import OfAngles, Watched
+from tmm_sheets.methods.linkage.positions import Passages
 from tmm_sheets.words import marked, tell, tr
 
 BY_ANGLE = marked('give the crank angle of position 0 instead: start = "90 deg"')
@@ -102,23 +102,6 @@ SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
 WORLD = Rule("world angle of the crank", lambda start, sense, turned: start + sense * turned,
              ("inclination", "number", "angle"), "angle",  # with its sign, as the sum is told
              marked("Angle of the crank {name} = {0} + {1}·{2} = {value}."), unit="rad", exact=True)
-EQUAL = Rule("equal parts of a turn", lambda parts, number, extra: 2 * np.pi / parts * number + extra,
-             ("number", "number", "angle"), "angle",
-             marked("Divide the turn of the crank into {0} equal parts; angle turned {name} = {value}."), unit="rad", exact=True)
-EQUAL_SWING = Rule("equal parts of a swing", lambda swing, parts, number, extra: swing / parts * number + extra,
-                   ("angle", "number", "number", "angle"), "angle",
-                   marked("Divide the swing of the crank {0} into {1} equal parts; angle turned {name} = {value}."), unit="rad",
-                   exact=True)
-STROKE_OF_K = Rule("crank angle of the working stroke", lambda k: np.pi * (1 + (k - 1) / (k + 1)), ("number",), "angle",
-                   marked("Angle of the working stroke {name} = 180°·(1 + (K − 1)/(K + 1)) = {value}."), unit="rad",
-                   source="000, 3.1", exact=True)
-BETWEEN = Rule("symmetric between the dead positions",
-               lambda dead, sense, exact, stroke: dead + sense * exact / 2 - sense * stroke / 2,
-               ("angle", "number", "angle", "angle"), "angle",
-               marked("Lay off the working stroke symmetrically between the dead positions: angle of position 0 {name} = {value}."),
-               unit="rad", exact=True)
-
-
 @primitive("angle turned", "real")
 def _turned(start: float, end: float, sense: float) -> float:
     """Angle from one direction to another in the sense of rotation, 0 to 360 degrees."""
@@ -141,13 +124,45 @@ def _parts_of_turns(stroke: float, working: float, idle: float, turns: float) ->
 
 TURNED = Rule("angle between dead positions", _turned, ("angle", "angle", "number"), "angle",
               marked("Angle of the working stroke between the dead positions {name} = {value}."), unit="rad", exact=True)
-PARTS = Rule("equal parts of both strokes", _parts, ("angle", "number", "number"), "angle",
-             marked("Divide the working stroke into {1} equal parts, the idle stroke into {2}; angle turned {name} = {value}."),
-             unit="rad", exact=True)
-PARTS_OF_TURNS = Rule(
-    "equal parts of both strokes of several turns", _parts_of_turns, ("angle", "number", "number", "number"), "angle",
-    marked("In each of {3} turns divide the working stroke into {1} equal parts, the idle stroke into {2}; "
-           "angle turned {name} = {value}."), unit="rad", exact=True)
+ANGLES: StepTable = {
+    "φ_рх": ("K", lambda: tr("φ_w"),
+        Rule("crank angle of the working stroke", lambda k: np.pi * (1 + (k - 1) / (k + 1)), ("number",),
+            "angle", marked("Angle of the working stroke {name} = 180°·(1 + (K − 1)/(K + 1)) = {value}."), unit="rad",
+            source="000, 3.1", exact=True)),
+    "φ_0": ("dead sense exact φ_рх", "",
+        Rule("symmetric between the dead positions",
+            lambda dead, sense, exact, stroke: dead + sense * exact / 2 - sense * stroke / 2,
+            ("angle", "number", "angle", "angle"), "angle",
+            marked("Lay off the working stroke symmetrically between the dead positions: angle of position 0 {name} = {value}."),
+            unit="rad", exact=True)),
+    "φ_п": ("stroke working idle", lambda: tr("φ_t"),
+        Rule("equal parts of both strokes", _parts, ("angle", "number", "number"), "angle",
+            marked("Divide the working stroke into {1} equal parts, the idle stroke into {2}; angle turned {name} = {value}."),
+            unit="rad", exact=True)),
+    "φ": ("start sense φ_п", "", WORLD),
+}
+"""Crank angles of positions in parts of both strokes."""
+OF_TURNS: StepTable = {
+    "φ_п": ("stroke working idle turns", lambda: tr("φ_t"),
+        Rule("equal parts of both strokes of several turns", _parts_of_turns, ("angle", "number", "number", "number"), "angle",
+            marked("In each of {3} turns divide the working stroke into {1} equal parts, the idle stroke into {2}; "
+                   "angle turned {name} = {value}."), unit="rad", exact=True)),
+}
+PARTS = ANGLES["φ_п"][2], OF_TURNS["φ_п"][2]
+"""Rules that divide both strokes."""
+OF_EQUAL_PARTS: StepTable = {
+    "φ_п": ("positions number extra", lambda: tr("φ_t"),
+        Rule("equal parts of a turn", lambda parts, number, extra: 2 * np.pi / parts * number + extra,
+            ("number", "number", "angle"), "angle",
+            marked("Divide the turn of the crank into {0} equal parts; angle turned {name} = {value}."), unit="rad", exact=True)),
+}
+OF_SWING: StepTable = {
+    "φ_п": ("swing positions number extra", lambda: tr("φ_t"),
+        Rule("equal parts of a swing", lambda swing, parts, number, extra: swing / parts * number + extra,
+            ("angle", "number", "number", "angle"), "angle",
+            marked("Divide the swing of the crank {0} into {1} equal parts; angle turned {name} = {value}."), unit="rad",
+            exact=True)),
+}
 
 
 def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle: int, coefficient: float | None,
@@ -165,17 +180,17 @@ def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle
     sense, dead = m.crank.sense, _dead_of(m, output, SENSES[working_sense])
     labels = tuple(str(i) for i in range((working + idle) * turns))
     plan = Plan("cycle", tr("Numbering of the positions"), "rad", labels)
-    start, stroke, begin = dead.start, dead.width, 0.0
+    given: dict[str, Any] = {"start": dead.start, "stroke": dead.width, "sense": sense, "dead": dead.start, "exact": dead.width,
+             "working": GivenNumber(working, "cycle.working"), "idle": GivenNumber(idle, "cycle.idle"),
+             "turns": GivenNumber(turns, "cycle.turns")}
+    begin = 0.0
     if coefficient is not None:
-        stroke = plan.add("φ_рх", STROKE_OF_K, GivenNumber(coefficient, "cycle.coefficient", "K"), symbol=tr("φ_w"))
-        start = plan.add("φ_0", BETWEEN, dead.start, sense, dead.width, stroke)
-        begin = (stroke.value - working_stroke(dead.runs)[1]) / 2
-    parts = GivenNumber(working, "cycle.working"), GivenNumber(idle, "cycle.idle")
-    turned = (plan.add("φ_п", PARTS, stroke, *parts, symbol=tr("φ_t")) if turns == 1 else
-              plan.add("φ_п", PARTS_OF_TURNS, stroke, *parts, GivenNumber(turns, "cycle.turns"), symbol=tr("φ_t")))
-    plan.add("φ", WORLD, start, sense, turned)
+        given["start"] = record(plan, "φ_рх φ_0", ANGLES, given=given | {"K": GivenNumber(coefficient, "cycle.coefficient", "K")})
+        given["stroke"] = plan["φ_рх"]
+        begin = (plan["φ_рх"].value - working_stroke(dead.runs)[1]) / 2
+    record(plan, "φ_п φ", {} if turns == 1 else OF_TURNS, ANGLES, given=given)
     strokes = _strokes(m, output, dead, begin)
-    return Cycle(labels, turned.value, float(start.value), sense, 2 * np.pi * turns, strokes, dead.plan, plan)
+    return Cycle(labels, plan["φ_п"].value, float(given["start"].value), sense, 2 * np.pi * turns, strokes, dead.plan, plan)
 
 
 def _check_first(label: str, last: int) -> None:
@@ -186,7 +201,7 @@ def _check_first(label: str, last: int) -> None:
 
 
 def _numbering(named: Mapping[str, tuple[float, float, float]],
-               extra: Mapping[str, float]) -> tuple[tuple[str, ...], Plan, list[Given]]:
+               extra: Mapping[str, float]) -> tuple[tuple[str, ...], Plan, dict[str, Given]]:
     """Labels in order of their angles, the plan of the numbering, and rows of what it divides: numbers, further angles.
 
     Raises
@@ -199,8 +214,8 @@ def _numbering(named: Mapping[str, tuple[float, float, float]],
                           tell("give the further position another name"))
     every = {**named} | {label: (angle, 0.0, angle) for label, angle in extra.items()}
     order = tuple(sorted(every, key=lambda label: every[label][0]))
-    rows = [Given(np.array([every[label][k] for label in order], dtype=np.float64), name, "", unit)
-            for k, name, unit in ((1, "numbers of the positions", ""), (2, "cycle.extra", "rad"))]
+    rows = {key: Given(np.array([every[label][k] for label in order], dtype=np.float64), name, "", unit)
+            for key, k, name, unit in (("number", 1, "numbers of the positions", ""), ("extra", 2, "cycle.extra", "rad"))}
     return order, Plan("cycle", tr("Numbering of the positions"), "rad", order), rows
 
 
@@ -223,8 +238,9 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
     named = {first if i == 0 else str(i): (2 * np.pi / positions * i, i, 0.0) for i in range(count)}
     further = {label: float(np.mod(angle, 2 * np.pi * turns)) for label, angle in (extra or {}).items()}
     order, numbering, rows = _numbering(named, further)
-    turned = numbering.add("φ_п", EQUAL, GivenNumber(positions, "cycle.positions"), *rows, symbol=tr("φ_t"))
-    numbering.add("φ", WORLD, GivenNumber(start, "cycle.start", "φ_0", "rad"), m.crank.sense, turned)
+    record(numbering, "φ_п φ", OF_EQUAL_PARTS, ANGLES, given={
+        **rows, "positions": GivenNumber(positions, "cycle.positions"),
+        "start": GivenNumber(start, "cycle.start", "φ_0", "rad"), "sense": m.crank.sense})
     plan, strokes = None, None
     if output is not None and working_sense is not None:
         dead = _dead_of(m, output, SENSES[working_sense], round_about=True)
@@ -233,7 +249,7 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
         # A dead position that is position 0 up to rounding is position 0.
         begin = 0.0 if min(begin, 2 * np.pi - begin) < 1e-12 else begin
         strokes = _strokes(m, output, dead, begin)
-    return Cycle(order, turned.value, start, m.crank.sense, 2 * np.pi * turns, strokes, plan, numbering)
+    return Cycle(order, numbering["φ_п"].value, start, m.crank.sense, 2 * np.pi * turns, strokes, plan, numbering)
 
 
 def swing_cycle(m: Mechanism, start: float, end: float, positions: int, *, zero: str = "0",
@@ -258,9 +274,10 @@ def swing_cycle(m: Mechanism, start: float, end: float, positions: int, *, zero:
     order, numbering, rows = _numbering(named, extra or {})
     width = numbering.auxiliary("φ_к", TURNED, GivenNumber(start, "cycle.start", "φ_0", "rad"),
                             GivenNumber(end, "cycle.end", "", "rad"), m.crank.sense, symbol=tr("φ_s"))
-    turned = numbering.add("φ_п", EQUAL_SWING, width, GivenNumber(positions, "cycle.positions"), *rows, symbol=tr("φ_t"))
-    numbering.add("φ", WORLD, GivenNumber(start, "cycle.start", "φ_0", "rad"), m.crank.sense, turned)
-    return Cycle(order, turned.value, start, m.crank.sense, swing, None, None, numbering, swings=True)
+    record(numbering, "φ_п φ", OF_SWING, ANGLES, given={
+        **rows, "swing": width, "positions": GivenNumber(positions, "cycle.positions"),
+        "start": GivenNumber(start, "cycle.start", "φ_0", "rad"), "sense": m.crank.sense})
+    return Cycle(order, numbering["φ_п"].value, start, m.crank.sense, swing, None, None, numbering, swings=True)
 
 
 @dataclass(frozen=True)
@@ -298,7 +315,7 @@ def _dead_of(m: Mechanism, output: str, axis: complex, round_about: bool = False
     otherwise.
     """
     sense, watched = m.crank.sense, Watched(m, DEAD_POINTS)
-    if passages(m).turning_back(output):
+    if Passages(m).turning_back(output):
         check_turn(m, output)  # names the group
     way = way_of(m, watched, output, axis, round_about)
     runs = runs_of(way.speed)

@@ -109,7 +109,7 @@ class Positions:
 
     def _passage(self, group: StructuralGroup) -> Crossing | None:
         """Crossing of a group that hangs on others and has change points."""
-        passing = passages(self.mechanism)
+        passing = Passages(self.mechanism)
         angles = passing.angles(group)
         if not angles:
             return None
@@ -132,11 +132,6 @@ def _root(m: Mechanism, phi: Any) -> Any:
 
 
 SEARCHED = "change points"
-
-
-def passages(m: Mechanism) -> Passages:
-    """Change points of a mechanism."""
-    return Passages(m, lambda of, phi, until: position_plan(of, phi, purpose=SEARCHED, until=until))
 
 
 FOLLOWED = "ways of assembly"
@@ -315,13 +310,9 @@ class PassagePlace:
 
 @dataclass(frozen=True)
 class Passages:
-    """Change points of a mechanism; ``plan`` makes its plan of positions at crank angles, rad, as far as before a group.
-
-    What is found is kept with the mechanism.
-    """
+    """Change points of a mechanism; what is found is kept with it."""
 
     m: Mechanism
-    plan: Callable[[Mechanism, Any, StructuralGroup | None], Any]
 
     def angles(self, g: StructuralGroup) -> tuple[float, ...]:
         """Crank angles of the change points of a group, rad; found once."""
@@ -347,7 +338,7 @@ class Passages:
         def gap(i: int, phi: Reals) -> tuple[Any, Any]:
             """One of both gaps and what is rounding beside it, shape (n,)."""
             with np.errstate(all="ignore"):  # beyond a guide that lies along another one points are anywhere
-                both = g.kind.gaps_at(self.plan(until, phi, until.groups[-1]), g)
+                both = g.kind.gaps_at(position_plan(until, phi, purpose=SEARCHED, until=until.groups[-1]), g)
             return np.broadcast_to(both[i], np.shape(phi)), np.broadcast_to(both[2], np.shape(phi))
 
         sweep = 2 * pi / SWEEP * np.arange(SWEEP)

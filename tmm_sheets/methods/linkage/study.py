@@ -19,12 +19,11 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups.contexts import Load
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.integration import weighted
-from tmm_sheets.methods.linkage.accelerations import Accelerations, Sliding, acceleration_plan
 from tmm_sheets.methods.linkage.cycle import TURN, Cycle, named_angles
 from tmm_sheets.methods.linkage.forces import GearForce, InputForce, Kinetostatics, external_loads, kinetostatics, limits_of_forces
 from tmm_sheets.methods.linkage.loads import Applied
+from tmm_sheets.methods.linkage.motion import Accelerations, Sliding, Velocities, acceleration_plan, velocity_plan
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
-from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
 from tmm_sheets.methods.linkage.zhukovsky import Lever, lever
 from tmm_sheets.words import marked, tell, tr
 
@@ -274,7 +273,7 @@ class Motion:
     def inclination(self, link: str, guide: str) -> Step:
         """Inclination of a rod to the guide of its other end, rad, positive counter-clockwise, at the positions."""
         u, along = self.study.positions.directions[link], self.study.positions.guide_directions[guide]
-        return self.plan.once(f"θ_{link}", INCLINATION, u, along, symbol=f"θ_{{{link}}}")
+        return self.plan.add_once(f"θ_{link}", INCLINATION, u, along, symbol=f"θ_{{{link}}}")
 
     @cached_property
     def turned(self) -> Reals:

@@ -18,8 +18,7 @@ import numpy as np
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.step import GivenNumber, Helper, Plan, Rule, Step
-from tmm_sheets.construction.tables import StepTable, record
+from tmm_sheets.construction.step import GivenNumber, Helper, Plan, Rule, Step, StepTable, record
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number
 from tmm_sheets.words import marked, tell, tr
@@ -251,7 +250,7 @@ GENEVA: StepTable = {
             "")),
     "r_f": ("l_AB roller", lambda: tr("r_{l}"),
         Rule("radius of the locking disc", lambda r, roller: r - 2 * roller, ("length", "length"), "length",
-            marked("Radius of the locking disc, with a horn as thick as the roller's radius: {name} = {0} − 2·{1} = {value}."))),
+            marked("Radius of the locking disc, with a horn as thick as the roller's radius: {formula}."))),
 }
 
 

@@ -17,7 +17,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.step import Helper, Plan, Rule, Step, symbol
 from tmm_sheets.mechanism.groups.contexts import Load
 from tmm_sheets.methods.linkage.forces import GearForce, InputForce, contact_point
-from tmm_sheets.methods.linkage.velocities import POLE, SAME, SIMILAR, Velocities
+from tmm_sheets.methods.linkage.motion import POLE, SAME, SIMILAR, Velocities
 from tmm_sheets.words import marked, tr
 
 CONTACT = "fquwxyz"

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from tmm_sheets.construction.readable import CURVE
-from tmm_sheets.construction.scale import STANDARD, fitting
+from tmm_sheets.construction.scale import CURVE, STANDARD, fitting
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets.border_solver import BorderNode, Need, leaf, reached, stepped
 from tmm_sheets.sheets.cams import cam as cam_views

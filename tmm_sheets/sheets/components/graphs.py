@@ -17,18 +17,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tmm_sheets.construction.readable import CURVE
-from tmm_sheets.construction.scale import Scale, coarser, finer, fit, reach
+from tmm_sheets.construction.scale import CURVE, Scale, coarser, finer, fit, reach
 from tmm_sheets.drawing.canvas import SMALLEST, Canvas
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box, PlacedFrame, Points
 from tmm_sheets.drawing.paper import A1
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import enough, fixed
-from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.border_solver import BorderNode, Measured, Need, leaf, risen
 from tmm_sheets.sheets.player import PlanFrame, pick
-from tmm_sheets.words import marked, tell, tr
+from tmm_sheets.words import Remark, marked, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.readable import MAIN
-from tmm_sheets.construction.scale import fit
+from tmm_sheets.construction.scale import MAIN, fit
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.lettering import letter

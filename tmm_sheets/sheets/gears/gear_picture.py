@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from tmm_sheets.construction.readable import TOOTH
-from tmm_sheets.construction.scale import STANDARD, Scale
+from tmm_sheets.construction.scale import STANDARD, TOOTH, Scale
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, lettered
 from tmm_sheets.drawing.ink import arcs_inside, segment_inside
 from tmm_sheets.drawing.ink_index import InkIndex

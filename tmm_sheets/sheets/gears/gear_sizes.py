@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import pi
 from typing import TYPE_CHECKING
 
-from tmm_sheets.construction.readable import TOOTH
+from tmm_sheets.construction.scale import TOOTH
 from tmm_sheets.sheets.border_solver import BorderNode, Need, reached, stepped
 from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.gears import gear, gear_picture, rack, train, train_scheme

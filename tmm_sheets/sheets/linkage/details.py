@@ -27,12 +27,11 @@ from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame, Points, Prove
 from tmm_sheets.drawing.owners import AT, CLEARLY
 from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.numbers import number
-from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.border_solver import WITHOUT_DETAILS, BorderNode, FigureNode, Form
 from tmm_sheets.sheets.linkage import link_marks
 from tmm_sheets.sheets.player import PlayerStage, once, together
 from tmm_sheets.sheets.views import ViewPlace, function
-from tmm_sheets.words import marked
+from tmm_sheets.words import Remark, marked
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project

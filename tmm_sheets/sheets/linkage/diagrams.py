@@ -10,21 +10,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction.indices import pair_index
-from tmm_sheets.construction.readable import CURVE, MAIN
-from tmm_sheets.construction.scale import Scale, handy, times
+from tmm_sheets.construction.scale import CURVE, MAIN, Scale, handy, times
 from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import NOISE, fixed, is_zero
-from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.border_solver import Measured
 from tmm_sheets.sheets.components import graphs, listed
 from tmm_sheets.sheets.components.graphs import Column, Curve, Quantity
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
 from tmm_sheets.sheets.linkage.link_marks import SignedTable, indexed, shapes, tell_signs
 from tmm_sheets.sheets.player import PlanFrame, PlayerStage, extent, once, pick, together
-from tmm_sheets.words import both, marked, marked_n, tell, tr, tr_in
+from tmm_sheets.words import Remark, both, marked, marked_n, tell, tr, tr_in
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -15,11 +15,10 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale, coarser, handy, reach
 from tmm_sheets.drawing.marks import PlacedFrame, Points
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.border_solver import LETTERED
 from tmm_sheets.sheets.linkage import link_marks
 from tmm_sheets.sheets.player import SHORTEST, PlanFrame, ScaleBook, extent, fit_frame, once, pick, raised, together
-from tmm_sheets.words import marked_n, tell, tell_n, tr
+from tmm_sheets.words import Remark, marked_n, tell, tell_n, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Plan
