@@ -11,7 +11,7 @@ OLDEST := .venv-oldest
 SOURCES := $(shell find tmm_sheets templates variants -type f -not -name '*.pyc' 2>/dev/null)
 
 .DEFAULT_GOAL := sheets
-.PHONY: help sheets test trials attack lint types oldest note wheel-test gallery gallery-check note-check gold messages docs figures picture pictures film site clean distclean
+.PHONY: help sheets test trials attack lint types oldest lock note wheel-test gallery gallery-check note-check gold messages docs figures picture pictures film site clean distclean
 
 sheets: $(OUT)/sheet1.pdf  ## the sheets of PROJECT (default lugansk/shaper) in out/; this is what plain "make" does
 
@@ -36,6 +36,11 @@ types: $(VENV)/.tested  ## types of the code (mypy)
 oldest: $(OLDEST)/.made  ## the oldest versions that pyproject.toml allows, in an environment of their own, and the tests of what stands on them
 	$(OLDEST)/bin/python -m pytest -W ignore tests/backends tests/note/test_pages.py tests/page/test_serve.py tests/task \
 	    tests/output/test_roster.py tests/compare/test_cad_file.py tests/compare/test_photograph.py tests/test_cli.py
+
+lock: $(VENV)/.made  ## tests/lock.txt: the newest versions of today with the hashes of their files, for every Python and system
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check "uv>=0.5"
+	$(BIN)/uv pip compile --quiet --universal --generate-hashes --no-annotate --python-version 3.11 --extra test --extra frame \
+	    --custom-compile-command "make lock" --no-config --output-file tests/lock.txt pyproject.toml
 
 note: $(VENV)/.installed  ## what the explanatory note needs (extra note), into the environment that is there
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[note]'
@@ -100,7 +105,8 @@ distclean: clean  ## remove the virtual environment as well
 help:  ## this list
 	@grep -hE '^[a-z-]+:.*  ## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 14
 
-# The environment: made once, brought up to date when pyproject.toml changes.
+# The environment: made once, brought up to date when pyproject.toml changes. With LOCKED=1, as in CI, first of all the very files of
+# tests/lock.txt; the ranges of pyproject.toml are satisfied then.
 
 $(VENV)/.made:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -108,10 +114,14 @@ $(VENV)/.made:
 	$(PYTHON) -m venv $(VENV)
 	@touch $@
 
-$(VENV)/.installed: $(VENV)/.made pyproject.toml $(wildcard templates/locale/*/*/*.po)
+$(VENV)/.installed: $(VENV)/.made $(if $(LOCKED),$(VENV)/.locked) pyproject.toml $(wildcard templates/locale/*/*/*.po)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
 	@touch $@
 
 $(VENV)/.tested: $(VENV)/.installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	@touch $@
+
+$(VENV)/.locked: $(VENV)/.made tests/lock.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement tests/lock.txt
 	@touch $@

@@ -18,21 +18,24 @@ import time
 import tomllib
 import traceback
 import warnings
+import zlib
 from collections import Counter
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
+from PIL import Image
 from starlette.exceptions import HTTPException
 
+from tests.faults import FAULTS
 from tests.project_files import text, toml
 from tests.test_doors import FAMILY, SCHEME, TABLE, WHOLES
 from tests.test_missing_parts import FILES
 from tests.test_odd_input import places
 from tmm_sheets import catalogue, protocols, resources, results, summary
 from tmm_sheets.__main__ import run
-from tmm_sheets.backends import dxf, png, svg
+from tmm_sheets.backends import dxf, pdf, png, svg
 from tmm_sheets.compare import group, placing
 from tmm_sheets.compare.cad import cad_file
 from tmm_sheets.compare.measured import measured_file
@@ -271,6 +274,12 @@ def measured():
 
 
 @cache
+def composed_cam():
+    """Its sheet."""
+    return sheet.composed(cam(), 1).drawing
+
+
+@cache
 def whole(kind):
     """A good file of a kind."""
     composed = sheet.composed(cam(), 1)
@@ -281,7 +290,7 @@ def whole(kind):
         "settings": '[title_block]\nstudent = "А"\n[paper]\nformat = "A2"\n', "family": FAMILY, "table": TABLE, "scheme": SCHEME,
         "views": '[[view]]\nname = "Кулачок"\nours = [[0, 0], [100, 0]]\ntheirs = [[10, 10], [110, 10]]\n',
         "measured": "\n".join(f"{line}{k}" if k > 5 else line for k, line in enumerate(table)), "kept": sheet.stored(composed),
-        "dxf": dxf.render(some).decode(), "image": png.render(some, 10), **WHOLES,
+        "dxf": dxf.render(some).decode(), "pdf": pdf.render(some), **WHOLES,
     }[kind]
 
 
@@ -316,6 +325,75 @@ def arguments(rng):
     return commanded(*words)
 
 
+# --- pictures ----------------------------------------------------------------------------------------------------------
+
+
+SIZES = [0, 1, 7, 1500, 1754, 32_001, 65_535, 100_000, 2**31 - 1, 2**32 - 1]
+FORMS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "WEBP")
+
+
+@cache
+def drawn_in(form, mode):
+    """A grey picture of the sheet in a format of pictures, small but large enough to be read."""
+    scan = Image.open(io.BytesIO(png.render(composed_cam(), 60))).convert(mode)
+    out = io.BytesIO()
+    scan.save(out, form)
+    return out.getvalue()
+
+
+def resized(data, rng):
+    """A picture that says it has another size; the checksum of PNG is right nonetheless."""
+    found, width = bytearray(data), rng.choice(SIZES)
+    if data[:4] == b"\x89PNG":
+        at = rng.choice([16, 20])
+        found[at:at + 4] = width.to_bytes(4, "big")
+        found[24:26] = rng.choice([b"\x08\x00", b"\x10\x02", b"\x01\x03", bytes(found[24:26])])
+        found[29:33] = zlib.crc32(found[12:29]).to_bytes(4, "big")
+    elif (frame := data.find(b"\xff\xc0")) > 0:
+        at = frame + rng.choice([5, 7])
+        found[at:at + 2] = (width % 2**16).to_bytes(2, "big")
+    else:
+        at = rng.randrange(2, 60)
+        found[at:at + 4] = width.to_bytes(4, rng.choice(["big", "little"]))
+    return bytes(found)
+
+
+def spoiled(data, rng):
+    """Bytes cut off, changed, mixed up, doubled, with a checksum that is wrong, or a size that is none."""
+    at = rng.randrange(len(data))
+    return rng.choice([lambda: data[:at], lambda: data[:at] + bytes(len(data) - at), lambda: cut(data, rng),
+                       lambda: resized(data, rng), lambda: resized(data, rng), lambda: data * 2, lambda: data,
+                       lambda: data[:33] + data[at:], lambda: data[:at] + data[at + 4:], lambda: rng.randbytes(at % 999) + data])()
+
+
+def picture(rng):
+    """A file of a picture that is spoiled, under the name of its own kind or another."""
+    form = rng.choice(FORMS)
+    data = drawn_in(form, rng.choice(["L", "RGB", "L" if form == "JPEG" else "P"]))
+    path = Path(f"x.{rng.choice(['png', 'jpg', 'pdf', 'tif', ''])}")
+    path.write_bytes(spoiled(data, rng))
+    return path
+
+
+def spoiled_pdf(data, rng):
+    """A PDF of another size, with other numbers, streams that are torn, tables that lead nowhere."""
+    at = rng.randrange(len(data))
+    sizes = b"/MediaBox [ 0 0 %d %d ]" % (rng.choice(SIZES), rng.choice(SIZES))
+    numbers = [match.span() for match in re.finditer(rb"\d+", data)]
+    start, end = rng.choice(numbers)
+    odd = str(rng.choice([*SIZES, -1, 1e300, "R", ""])).encode()
+    return rng.choice([lambda: data[:at], lambda: cut(data, rng), lambda: re.sub(rb"/MediaBox \[[^\]]*\]", sizes, data),
+                       lambda: data[:start] + odd + data[end:], lambda: data[:at] + data[at + 40:],
+                       lambda: data.replace(b"/Count 1", b"/Count " + odd), lambda: data.replace(b"endstream", b"", 1),
+                       lambda: data.replace(b"obj", b"/Kids", rng.randrange(1, 9)), lambda: data * 2, lambda: data])()
+
+
+def around(fault, rng):
+    """A command while something is wrong around it."""
+    Path("mine.toml").write_text(SOURCES["cam_flat"], encoding="utf-8")
+    return fault(rng)
+
+
 DOORS = {
     "arguments": arguments,
     "ciphers": lambda rng: commanded("show", f"transport/{edited(rng.choice(['press@05-ЭПС-123', 'diesel@01-Т-27']), rng)}"),
@@ -327,10 +405,12 @@ DOORS = {
     "views": lambda rng: messages.read(placing.ViewsTable, put("views", "v.toml", rng)),
     "CSV": lambda rng: measured_file.read(put("measured", "m.csv", rng), cam(), measured()),
     "DXF": lambda rng: cad_file.read(put("dxf", "x.dxf", rng)),
-    "images": lambda rng: photograph.read(put("image", "x.png", rng, cut)),
+    "images": lambda rng: photograph.read(picture(rng)),
+    "PDF": lambda rng: photograph.read(put("pdf", "x.pdf", rng, spoiled_pdf)),
     "kept drawings": lambda rng: sheet.loaded(cut(whole("kept"), rng)),
-    "page": lambda rng: (page_jobs.check(asked(rng), print), page_jobs.project(asked(rng), print)),
+    "page": lambda rng: rng.choice([page_jobs.check, page_jobs.project])(asked(rng), print),
     "server": lambda rng: (page_doors._place(edited("Группа 1/Іванов/sheet1.dxf", rng), rng.random() < 0.5)),
+    **{kind: partial(around, fault) for kind, fault in FAULTS.items()},
 }
 """What a stranger brings to each door, and what is done with it there: nothing but its work, or words."""
 

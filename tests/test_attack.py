@@ -7,7 +7,7 @@ import tomllib
 
 import pytest
 
-from tests.attack import DOORS, SMALL, SOURCES, case, entered, fallen
+from tests.attack import DOORS, FAULTS, SMALL, SOURCES, case, entered, fallen
 from tests.few import few
 from tests.project_files import EVEN, FLYWHEEL, FORCE, GEAR, MASS, MOMENT, SLIDER, WORKING, from_file, project, read
 from tmm_sheets import protocols, results
@@ -26,9 +26,9 @@ def test_nothing_falls_over(n):
 
 @pytest.mark.parametrize("door", DOORS)
 def test_no_door_falls_in(door, tmp_path, monkeypatch):
-    """Some of the cases of ``python -m tests.attack``."""
+    """Some of the cases of ``python -m tests.attack``; those with a process of their own take long."""
     monkeypatch.chdir(tmp_path)
-    assert {entered(door, n) for n in few(range(30), *range(4))} <= {"done", "refused"}
+    assert {entered(door, n) for n in range(1 if door in FAULTS else 30)} <= {"done", "refused"}
 
 
 @pytest.mark.parametrize(

@@ -4,17 +4,19 @@ import io
 import os
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
 from tests.few import few
-from tmm_sheets import apart, catalogue, kept, summary, terminal
+from tmm_sheets import apart, catalogue, defects, files, kept, summary, terminal
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare.cad import cad_file
 from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.living import page
 from tmm_sheets.optimising import wishes
-from tmm_sheets.output import roster
+from tmm_sheets.output import batch, building, roster
 from tmm_sheets.task import edited_text, family_tables
 
 CAM = "lugansk/cam_flat"
@@ -212,17 +214,101 @@ def test_lines_in_one_place_and_beyond_all_measure(tmp_path):
     assert f"left out, in the place of {cad_file.MOST_COPIES} others: {3000 - cad_file.MOST_COPIES} lines" in ink.notes
 
 
-def test_what_led_to_a_defect_is_kept(desk, monkeypatch, capsys):
-    def fall(*_):
-        raise KeyError("here")
+# --- defects -------------------------------------------------------------------------------------------------------------
 
+
+NEEDED = ("schema", "[", "name", "title", "follower", "law", "rise", "fall", "stroke")
+"""What the least file of a cam has whose defect is in its stroke."""
+
+
+def fall(read, *_):
+    """Fall over a stroke."""
+    if read.cam is not None and read.cam.stroke:
+        raise KeyError("here")
+    return read
+
+
+@pytest.fixture
+def defect(desk, monkeypatch):
+    """A defect in each of these, a file that shows it, and where others are kept."""
     Path("mine.toml").write_text(SCHEME, encoding="utf-8")
     monkeypatch.setattr(summary, "text", fall)
+    monkeypatch.setattr(building, "with_room", fall)
+    monkeypatch.setattr(batch, "with_room", fall)
+    monkeypatch.setenv(kept.FOLDER, "cache")
+    return "mine.defect.txt, mine.defect.toml" if hasattr(os, "fork") else "mine.defect.txt"
+
+
+def is_least(path):
+    lines = Path(path).read_text(encoding="utf-8").splitlines()
+    return len(lines) == len(NEEDED) + 1 and all(line.startswith(NEEDED) for line in lines)
+
+
+def test_what_led_to_a_defect_is_kept(defect, capsys):
     assert run(["show", "mine.toml"]) == 1
-    assert "what led to it is kept in mine.defect.txt" in capsys.readouterr().err
+    assert f"what led to it is kept in {defect}\n" in capsys.readouterr().err
     told = Path("mine.defect.txt").read_text(encoding="utf-8")
     assert told.startswith("tmm-sheets show mine.toml\n")
     assert "KeyError: 'here'" in told
     assert told.endswith(SCHEME)
+    assert is_least("mine.defect.toml")
     assert run(["show", CAM]) == 1
-    assert "kept" not in capsys.readouterr().err
+    (found,) = Path("cache").glob("defect-*.txt")  # beside a shipped project is no place
+    assert f"kept in {found}\n" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("falls", "left"), [
+    (lambda lines: True, []), (lambda lines: b"b\n" in lines, [b"b\n"]), (lambda lines: lines[-1:] == [b"d"], [b"d"]),
+    (lambda lines: {b"a\n", b"c\n"} <= {*lines}, [b"a\n", b"c\n"]), (lambda lines: len(lines) == 4, [b"a\n", b"b\n", b"c\n", b"d"]),
+    (lambda lines: False, [b"a\n", b"b\n", b"c\n", b"d"])])
+def test_the_least_input(falls, left):
+    """None of its lines, one, some, all; and of work that never falls over again, all."""
+    def again(path):
+        if falls(path.read_bytes().splitlines(keepends=True)):
+            raise KeyError
+        raise ValueError
+
+    place = ("KeyError", __file__, again.__code__.co_firstlineno + 2)
+    assert defects.least(b"a\nb\nc\nd", "x.csv", again, place) == b"".join(left)
+
+
+def test_a_least_input_is_not_looked_for_long_and_nothing_is_written(monkeypatch, tmp_path):
+    def again(path):
+        if len(path.read_bytes()) < 4:
+            while True:
+                pass
+        with suppress(OSError):
+            files.put({tmp_path / "mine": b"lost"})
+        raise KeyError
+
+    (tmp_path / "mine").write_bytes(b"kept")
+    monkeypatch.setattr(defects, "SECONDS", 1)
+    place = ("KeyError", __file__, again.__code__.co_firstlineno + 6)
+    assert defects.least(b"a\nb\nc\n", "x", again, place) == b"a\nb\nc\n"
+    assert (tmp_path / "mine").read_bytes() == b"kept"
+
+
+def test_a_group_goes_on_after_a_defect(defect, capsys):
+    Path("r.csv").write_text("student;task\nOne;mine.toml\nTwo;lugansk/cam_rocker\n", encoding="utf-8")
+    assert run(["roster", "r.csv", "-o", "o", "--format", "svg", "--jobs", "1"]) == 1
+    said = capsys.readouterr().err
+    assert "One: internal error: KeyError: 'here'" in said
+    assert f"what led to it is kept in {defect}\n" in said
+    assert is_least("mine.defect.toml")
+    assert list(Path("o").glob("*/*.svg"))
+
+
+def test_a_watched_file_is_watched_on_after_a_defect(defect, monkeypatch, capsys):
+    monkeypatch.setattr(files, "saved", lambda paths: iter([None, None]))
+    assert run(["watch", "mine.toml", "--format", "svg"]) == 0
+    said = capsys.readouterr().err
+    assert said.count("internal error: KeyError: 'here'\n") == 2
+    assert said.count(f"what led to it is kept in {defect}\n") == 2
+    assert is_least("mine.defect.toml")
+
+
+def test_a_living_page_with_a_defect(defect, monkeypatch, capsys):
+    monkeypatch.setattr(page, "page", lambda project, *_: fall(project.variant))
+    assert run(["page", "mine.toml", "-o", "mine.html"]) == 1
+    assert f"what led to it is kept in {defect}\n" in capsys.readouterr().err
+    assert is_least("mine.defect.toml")

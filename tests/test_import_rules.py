@@ -11,8 +11,8 @@ import pytest
 
 ROOT = Path(__file__).parents[1] / "tmm_sheets"
 MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts): p for p in ROOT.rglob("*.py")}
-NEUTRAL = ("apart box csv_tables encodings errors files kept meanings numbers program quoting resources progress spelling "
-           "terminal toml_file toml_lines version words")
+NEUTRAL = ("apart box csv_tables defects encodings errors files kept meanings numbers program quoting resources progress "
+           "spelling terminal toml_file toml_lines version words")
 METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.integration"
 
 RULES = {
@@ -53,7 +53,7 @@ RULES = {
     "sheets": ("construction drawing mechanism.structure", f"project mechanism {METHODS}"),
     "backends": ("drawing", ""),
     "output": ("backends catalogue drawing explain project sheets task.title_entries", "task"),
-    "output.family_check": ("project task.family_folder", ""),
+    "output.family_check": ("project task.family_folder task.variant", ""),
     "output.batch": ("catalogue compare.measured living note output project task.title_entries", ""),
     "output.roster": ("catalogue output task.families task.letters", ""),
     "page": ("backends catalogue compare drawing living output project sheets task", ""),
@@ -83,7 +83,7 @@ RULES = {
 LIBRARIES = {
     "ezdxf": "backends.dxf backends.dxf_frame_making compare.cad.cad_file compare.overlays",
     "reportlab": "backends.pdf compare.report_pages",
-    "matplotlib": "backends.png lab.bench.records optimising.picture",
+    "matplotlib": "backends.png lab.bench.records optimising.optimum",
     "pydantic": "task.values task.schema task.messages task.variant task.title_entries task.keys "
                 "task.family_folder task.family_tables compare.group compare.placing",
     "pydantic_core": "task.messages task.keys task.schema", "cv2": "compare.photo", "pypdfium2": "compare.photo",

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tmm_sheets.numbers import NOISE, clean, decimal, fixed, is_zero, number, plain, size
+from tmm_sheets.numbers import NOISE, Sizes, clean, decimal, fixed, is_zero, number, plain
 
 
 @pytest.mark.parametrize(
@@ -76,20 +76,20 @@ def test_a_difference_of_equals_is_nothing(a, b):
 def test_size_does_not_follow_a_dead_point():
     """One position in twelve is a million times as large: the others keep their size, it has its own."""
     speeds = np.array([1e9, *np.linspace(1.0, 3.0, 11)])
-    assert size([speeds], 0) == 1e9
-    assert 2.0 <= size([speeds], 5) <= 3.0
-    assert not is_zero(0.5, size([speeds], 5))
+    assert Sizes([speeds]).at(0) == 1e9
+    assert 2.0 <= Sizes([speeds]).at(5) <= 3.0
+    assert not is_zero(0.5, Sizes([speeds]).at(5))
 
 
 def test_size_knows_noise_at_one_position_by_the_others():
     """A force that vanishes at one position is noise there, though it is the greatest it has there."""
     forces = np.array([1e-13, 20.0, 30.0, 25.0 + 1j])
-    assert is_zero(forces[0], size([forces], 0))
-    assert size([forces, 7e3], 0) == 7e3
+    assert is_zero(forces[0], Sizes([forces]).at(0))
+    assert Sizes([forces, 7e3]).at(0) == 7e3
 
 
 def test_size_without_anything():
-    assert size([], 0) == 0.0
-    assert size([np.array([nan, inf])], 0) == 0.0
-    assert size([np.array([nan, 2.0])], 0) == 2.0
+    assert Sizes([]).at(0) == 0.0
+    assert Sizes([np.array([nan, inf])]).at(0) == 0.0
+    assert Sizes([np.array([nan, 2.0])]).at(0) == 2.0
     assert NOISE == 1e-9

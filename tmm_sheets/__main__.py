@@ -69,21 +69,21 @@ def _run(arguments: list[str]) -> int:
 
 
 def _carried_out(arguments: list[str]) -> int:
+    from pathlib import Path
+
     import click
 
-    from tmm_sheets.cli import commands
-    from tmm_sheets.errors import BadInput, CannotBuild, Stopped, reason_of, told_of
+    from tmm_sheets.errors import BadInput, CannotBuild, Stopped, reason_of
     from tmm_sheets.words import tell
 
     asked = os.environ.get("_TMM_SHEETS_COMPLETE")
     if asked:  # by a shell, see completion.py
         from tmm_sheets import completion
+        from tmm_sheets.cli import commands
 
         return completion.answer(commands, asked)
     try:
-        # Not commands.main(): that ends the program by itself and with other statuses on Ctrl-C and closed pipes.
-        with commands.make_context("tmm-sheets", arguments) as context:
-            commands.invoke(context)
+        _invoke(arguments)
         return DONE
     except click.exceptions.Exit as e:
         return e.exit_code
@@ -107,26 +107,21 @@ def _carried_out(arguments: list[str]) -> int:
     except MemoryError:
         return _say(tell("not enough memory; ask for fewer positions"), CANNOT_BUILD)
     except Exception as e:
-        hints = (tell("this is a defect of the program; TMM_SHEETS_TRACEBACK=1 shows where it happened"), _kept(arguments, e))
-        return _say("\n    ".join(filter(None, (told_of(e), *hints))), CANNOT_BUILD)
+        from tmm_sheets import defects
+
+        given = next(filter(os.path.isfile, arguments), None)
+        said = defects.told(e, arguments, None if given is None else Path(given),
+                            lambda path: _invoke([str(path) if word == given else word for word in arguments]))
+        hint = tell("this is a defect of the program; TMM_SHEETS_TRACEBACK=1 shows where it happened")
+        return _say(f"{said}\n    {hint}", CANNOT_BUILD)
 
 
-def _kept(arguments: list[str], e: Exception) -> str:
-    """That the command, the file that it was given and where it fell over are kept beside that file; empty where nothing is."""
-    import traceback
-    from contextlib import suppress
-    from pathlib import Path
+def _invoke(arguments: list[str]) -> None:
+    from tmm_sheets.cli import commands
 
-    from tmm_sheets import files, quoting
-    from tmm_sheets.words import tell
-
-    with suppress(OSError, ValueError):
-        file = next((path for path in map(Path, arguments) if path.suffix == ".toml" and path.is_file()), None)
-        if file is not None and not files.confined():
-            kept, lines = file.with_suffix(".defect.txt"), "".join(traceback.format_exception(e))
-            kept.write_text(f"{quoting.command(*arguments)}\n\n{lines}\n{file.read_text(encoding='utf-8')}", encoding="utf-8")
-            return tell("what led to it is kept in {file}").format(file=kept)
-    return ""
+    # Not commands.main(): that ends the program by itself and with other statuses on Ctrl-C and closed pipes.
+    with commands.make_context("tmm-sheets", [*arguments]) as context:
+        commands.invoke(context)
 
 
 def _say(message: str, status: int) -> int:

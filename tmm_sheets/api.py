@@ -11,9 +11,8 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
-from tmm_sheets import catalogue, words
+from tmm_sheets import catalogue, files, words
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.files import MOST_POSITIONS
 from tmm_sheets.project import Project
 from tmm_sheets.task import edited_text, title_entries
 from tmm_sheets.task import variant as variants
@@ -189,8 +188,7 @@ class Opened:
         except (TypeError, ValueError, OverflowError) as e:
             raise BadInput(tell("phi: expected angles in a row: {why}").format(why=e)) from None
         refused: dict[str, CannotBuild] = {}
-        told = results.told(self.project, parts or None, phi=angles, positions=positions, refused=refused)
-        return Numbers(told, refused)
+        return Numbers(results.told(self.project, parts or None, phi=angles, positions=positions, refused=refused), refused)
 
     @cached_property
     @_on_paper
@@ -322,6 +320,7 @@ class Opened:
         ``sheets`` are those that are in it, all unless told; it opens with ``plan``.
         """
         from tmm_sheets.living import page
+
         return Page(page.page(self.project, self.project.variant.chosen(sheets), plan)[0])
 
     @_on_paper
@@ -371,8 +370,7 @@ class Opened:
         """
         path = Path(file)
         by_name: Kind = {".csv": "measured", ".dxf": "dxf"}.get(path.suffix.lower(), "image")  # type: ignore[assignment]
-        report = compared(self.project, kind or by_name, path, sheet, views, pencil, reading, read_numbers)
-        return Findings(report)
+        return Findings(compared(self.project, kind or by_name, path, sheet, views, pencil, reading, read_numbers))
 
     @_on_paper
     def template(self, folder: Path | str = ".", everything: bool = False) -> Path:
@@ -383,7 +381,6 @@ class Opened:
         BadInput
             when the folder has one already that somebody has changed.
         """
-        from tmm_sheets import files
         from tmm_sheets.compare.measured import measured_lengths
 
         report = measured_lengths.template(self.project, Path(folder), everything, lambda what: None)
@@ -449,9 +446,7 @@ class Optimised:
     @property
     def svg(self) -> str:
         """The search as a picture."""
-        from tmm_sheets.optimising import picture
-
-        return picture.svg(self.search).decode()
+        return self.search.svg().decode()
 
     def _repr_svg_(self) -> str:
         return self.svg
@@ -483,9 +478,9 @@ class Said(str):
 
 
 def _check_count(name: str, n: int | None, least: int) -> None:
-    if n is not None and not least <= n <= MOST_POSITIONS:
+    if n is not None and not least <= n <= files.MOST_POSITIONS:
         said = tell("{name}: expected a number from {least} to {most}, not {n}")
-        raise BadInput(said.format(name=name, least=least, most=MOST_POSITIONS, n=n))
+        raise BadInput(said.format(name=name, least=least, most=files.MOST_POSITIONS, n=n))
 
 
 def _framed(page: str) -> str:
@@ -493,7 +488,5 @@ def _framed(page: str) -> str:
 
 
 def _saved(path: Path | str, text: str) -> Path:
-    from tmm_sheets import files
-
     files.write_all({Path(path): text.encode()})
     return Path(path)

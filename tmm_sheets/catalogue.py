@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tmm_sheets import files, quoting, resources, spelling
 from tmm_sheets.errors import BadInput, Problem
@@ -57,25 +57,22 @@ def _entries(_: object) -> tuple[ShippedProject, ...]:
     found = []
     for name in shipped():
         with suppress(BadInput, OSError, ValueError, LookupError, TypeError, AttributeError):  # a family is not finished yet
-            table = _heading(name)
+            folder = families.folder_of(name)
+            table = families.heading(folder, name) if folder is not None else families.table_of_heading(_path(name))
             found.append(ShippedProject(name, table["title"], table.get("variant", ""), tuple(table.get("sheets", ()))))
     return tuple(found)
+
+
 def found(word: str) -> tuple[ShippedProject, ...]:
     """Shipped projects that have a word, or part of one, in their names, titles or variants, in any language."""
     wanted = word.casefold()
     return tuple(e for e in entries() if any(wanted in text.casefold() for text in (e.name, *every(e.title), *every(e.variant))))
 
 
-def _heading(name: str) -> dict[str, Any]:
-    folder = families.folder_of(name)
-    if folder is not None:
-        return families.heading(folder, name)
-    return families.table_of_heading(_path(name))
-
-
-def read(project: str, corrected: bool = False) -> Variant:
+def read(project: str, corrected: bool = False, guessed: bool = True) -> Variant:
     """Variant of a shipped name or of a project file; ``corrected``: without the suspected misprints of the manuals' tables.
 
+    ``guessed``: what may be meant by a name is told where there is none; that costs a look at all names.
     A name goes first, so that a file of the same name in the working folder changes nothing; write ``./name`` for it.
     """
     from tmm_sheets.task import variant
@@ -86,7 +83,7 @@ def read(project: str, corrected: bool = False) -> Variant:
         return found.shipped_as(found.project.name)
     if project in _files():
         return variant.read(_path(project)).shipped_as(project)
-    return variant.read(located(project))
+    return variant.read(located(project, guessed))
 
 
 def is_shipped(project: str) -> bool:
@@ -94,7 +91,7 @@ def is_shipped(project: str) -> bool:
     return (not project.endswith(SUFFIX) and families.folder_of(project) is not None) or project in _files()
 
 
-def located(project: str) -> Path:
+def located(project: str, guessed: bool = True) -> Path:
     """The project file at a path.
 
     Raises
@@ -105,17 +102,22 @@ def located(project: str) -> Path:
     path = files.named(project)
     if os.path.lexists(path):
         return path
-    beside: list[Path] = []
-    with suppress(OSError):
-        beside = sorted(path.parent.glob(f"*{SUFFIX}"))
-    hint = spelling.hint(project, (*map(str, beside), *shipped()), 3)
-    if not hint:
-        listing = tell("{command} shows the shipped projects").format(command=quoting.command("list"))
-        near = [e.name for e in found(project)[:3]]
-        hint = tell("did you mean {near}?").format(near=either(near)) if near else listing
+    hint = _meant(project, path) if guessed else ""
     if project.endswith(SUFFIX):
         raise BadInput(Problem(tell("no such file"), project, hint=hint))
     raise BadInput(tell('unknown project "{project}": neither a shipped name nor a file').format(project=project), hint=hint)
+
+
+def _meant(project: str, path: Path) -> str:
+    """What may be meant by a name of which there is no project."""
+    beside: list[Path] = []
+    with suppress(OSError):
+        beside = sorted(path.parent.glob(f"*{SUFFIX}"))
+    if hint := spelling.hint(project, (*map(str, beside), *shipped()), 3):
+        return hint
+    near = [e.name for e in found(project)[:3]]
+    return (tell("did you mean {near}?").format(near=either(near)) if near else
+            tell("{command} shows the shipped projects").format(command=quoting.command("list")))
 
 
 def _path(name: str) -> Path:

@@ -23,7 +23,7 @@ from click.shell_completion import (
     split_arg_string,
 )
 
-from tmm_sheets import catalogue
+from tmm_sheets import catalogue, files, words
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.quoting import PROGRAM
 
@@ -238,9 +238,9 @@ def plotters(context: click.Context, incomplete: str) -> Items:
 
 def formats(context: click.Context, incomplete: str) -> Items:
     """Formats of drawings, several with commas between; of the note those that it has."""
-    from tmm_sheets.files import ENDINGS
     from tmm_sheets.note.note import PACKAGES
-    return _listed(tuple(PACKAGES if context.info_name == "note" else ENDINGS), incomplete)
+
+    return _listed(tuple(PACKAGES if context.info_name == "note" else files.ENDINGS), incomplete)
 
 
 def parts(context: click.Context, incomplete: str) -> Items:
@@ -312,7 +312,6 @@ def _project(context: click.Context) -> Project | None:
     name = name[0] if isinstance(name, tuple | list) and name else name
     if not name:
         return None
-    from tmm_sheets import words
     from tmm_sheets.project import Project
 
     try:

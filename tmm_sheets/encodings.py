@@ -90,9 +90,7 @@ def _redirected(text: str) -> str | None:
 
 def cleaned(text: str) -> str:
     """The same with composed letters (NFC), every kind of space as a plain one, and no signs without width."""
-    if text.isascii():
-        return text
-    return normalize("NFC", text).translate(_PLAIN)
+    return text if text.isascii() else normalize("NFC", text).translate(_PLAIN)
 
 
 class _Plain(dict[int, str]):

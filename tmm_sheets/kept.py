@@ -8,13 +8,15 @@ Those not read for longest go when all together are too large.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import AbstractContextManager, suppress
 from contextvars import ContextVar
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 from zlib import crc32
+
+from tmm_sheets.words import meanwhile
 
 FOLDER = "TMM_SHEETS_CACHE"
 """Environment variable that names the folder; empty for none."""
@@ -35,19 +37,13 @@ T = TypeVar("T")
 _used = ContextVar("used", default=True)
 
 
-@contextmanager
-def unused() -> Iterator[None]:
+used = _used.get
+"""Whether anything is read there or written."""
+
+
+def unused() -> AbstractContextManager[None]:
     """Nothing is read there meanwhile, and nothing written."""
-    token = _used.set(False)
-    try:
-        yield
-    finally:
-        _used.reset(token)
-
-
-def used() -> bool:
-    """Whether anything is."""
-    return _used.get()
+    return meanwhile(_used, False)
 
 
 def forgo() -> None:

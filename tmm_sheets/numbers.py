@@ -45,11 +45,6 @@ class Sizes:
         return max(self._usual, float(self._greatest[k])) if k < self._greatest.size else self._usual
 
 
-def size(values: Iterable[Any], k: int) -> float:
-    """Size of a kind of quantities at position ``k``, see :class:`Sizes`."""
-    return Sizes(values).at(k)
-
-
 def is_zero(x: Any, kind: float) -> bool:
     """True for a number, real or complex, that is nothing but rounding beside ``kind``, the size of its kind."""
     return bool(abs(x) <= NOISE * kind)

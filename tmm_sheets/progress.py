@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
 from threading import Timer
 from time import monotonic, perf_counter
@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import Self
 
 from tmm_sheets.terminal import ERASE
-from tmm_sheets.words import tell
+from tmm_sheets.words import meanwhile, tell
 
 PATIENCE = 1.0
 """Seconds of silence before the first message."""
@@ -22,14 +22,9 @@ WIDTH = 30
 _heard = ContextVar[Callable[[str], None] | None]("heard", default=None)
 
 
-@contextmanager
-def heard(listener: Callable[[str], None]) -> Iterator[None]:
+def heard(listener: Callable[[str], None]) -> AbstractContextManager[None]:
     """Somebody else is told meanwhile, at once, what is going on."""
-    token = _heard.set(listener)
-    try:
-        yield
-    finally:
-        _heard.reset(token)
+    return meanwhile(_heard, listener)
 
 
 class Progress:

@@ -122,6 +122,4 @@ def _position(project: Project, plan: Plan) -> int:
     """Number of the position a plan is told for: that of the force analysis, or one where something has moved already."""
     cycle = project.variant.cycle
     label = cycle.force_position if cycle is not None else None
-    if label in plan.labels:
-        return plan.labels.index(label)
-    return min(2, len(plan.labels) - 1)
+    return plan.labels.index(label) if label in plan.labels else min(2, len(plan.labels) - 1)

@@ -35,5 +35,5 @@ def install(*extras: str) -> str:
             package, _, when = line.partition(";")
             if any(re.search(rf"""extra == ['"]{extra}['"]""", when) for extra in extras):
                 wanted.append(package.strip().replace(" ", ""))
-    packages = dict.fromkeys(wanted or ["-e", f".[{','.join(extras)}]"])  # the latter in the folder of the program's source
-    return quoted(("pip", "install", *packages))
+    # The latter in the folder of the program's source.
+    return quoted(("pip", "install", *dict.fromkeys(wanted or ["-e", f".[{','.join(extras)}]"])))

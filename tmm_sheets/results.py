@@ -11,18 +11,16 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.construction.step import Part, Reported, Step
+from tmm_sheets.construction.step import Part, Plan, Reported, Step
 from tmm_sheets.errors import BadInput, CannotBuild, together
 from tmm_sheets.numbers import Sizes, clean, in_a_row, listed
-from tmm_sheets.project import LINKAGE
+from tmm_sheets.project import LINKAGE, Project
 from tmm_sheets.result_files import json_pieces, leaves, plain_numbers, row
 from tmm_sheets.words import tell, tell_n
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.step import Plan
     from tmm_sheets.methods.linkage.friction import Friction
     from tmm_sheets.methods.linkage.study import Study
-    from tmm_sheets.project import Project
 
 SCHEMA = 1
 """Version of the tree; raised when a key changes its meaning."""
@@ -253,8 +251,7 @@ def _alike(table: dict[str, Any], key: str) -> list[Any] | None:
     """Quantities of the same kind as those of ``table[key]``: its own rows; forces and moments are compared with all reactions."""
     forces = [table[k] for k in ("reactions", "couples", "balancing") if k in table]
     of = forces if forces and key != "arms" else [table[key]]
-    rows = [v for found in of for v in found.values() if isinstance(v, list)]
-    return rows or None
+    return [v for found in of for v in found.values() if isinstance(v, list)] or None
 
 
 def _without_rounding(value: Any, alike: list[Any]) -> Any:

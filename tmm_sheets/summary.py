@@ -32,7 +32,10 @@ def text(variant: Variant, names: Names) -> str:
     if not (paper := names.paper(variant)).usual:
         lines.append(tell("paper: {format}, {orientation}").format(format=paper.format, orientation=paper.orientation))
     entered = [(name, of_file(told.text, tell), told.where if told.text else "") for name, told in names.entries(variant).items()]
-    lines += ["", tell("Title block"), *_table(entered), "  " + _precedence(variant)]
+    order = (tell("an option of build, note and plot goes first, then {beside}, {user}, {file}") if variant.shipped else
+             tell("an option of build, note and plot goes first, then {file}, {beside}, {user}"))
+    lines += ["", tell("Title block"), *_table(entered), "  " + order.format(
+        file=variant.called, beside=title_entries.beside_of(variant), user=title_entries.user_file() or "–")]
     lines += ["", tell("Inputs"), *_table(list(_inputs(variant)))]
     if variant.synthesis is not None:
         from tmm_sheets.project import Project
@@ -44,13 +47,6 @@ def text(variant: Variant, names: Names) -> str:
         m = mechanism_of(variant)
         lines += [*_structure(m), *(_ways(variant, g) for g in m.groups if g.kind.grade == 3)]
     return "\n".join(lines)
-
-
-def _precedence(variant: Variant) -> str:
-    """Which of several texts for the title block goes."""
-    order = (tell("an option of build, note and plot goes first, then {beside}, {user}, {file}") if variant.shipped else
-             tell("an option of build, note and plot goes first, then {file}, {beside}, {user}"))
-    return order.format(file=variant.called, beside=title_entries.beside_of(variant), user=title_entries.user_file() or "–")
 
 
 def swing(project: Project) -> Iterator[str]:

@@ -156,8 +156,7 @@ class BareValue(NamedTuple):
             return (f'"{self.value}"',)
         plain = re.sub(r"\s", "", match[2]).replace(",", ".")
         number = Decimal(match[1] + plain)
-        percent = f'"{(number * 100).normalize():f} %"'
-        return (f"{number:f}", *((percent,) if 0 < number < 1 else ()))
+        return (f"{number:f}", *((f'"{(number * 100).normalize():f} %"',) if 0 < number < 1 else ()))
 
     def put(self, text: str, value: str) -> str:
         """The text with another value in this place."""

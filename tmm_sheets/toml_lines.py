@@ -13,9 +13,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from tmm_sheets.words import tell
+
 KeyPath = tuple[str | int, ...]
 Found = tuple[KeyPath, str, str]
 """What is wrong with a value: its key path, message, hint."""
+
+Suspect = tuple[object, KeyPath, str, str]
+"""Whether something is wrong, its key path, message and hint, texts of the catalogues."""
 
 DEEPEST = 16
 """So many keys and places in lists lead to a value at most."""
@@ -60,6 +65,13 @@ def nodes(data: Any, path: KeyPath = ()) -> Iterator[tuple[KeyPath, Any]]:
 def dotted(path: Iterable[str | int], first: int = 0) -> str:
     """A key path as text, places in lists counted from ``first``: ``group[1].length``."""
     return "".join([f"[{part + first}]" if isinstance(part, int) else f".{part}" for part in path]).removeprefix(".")
+
+
+def wrong(suspects: Iterable[Suspect], **names: object) -> Iterator[Found]:
+    """What is wrong, its message and its hint filled in."""
+    for is_so, path, said, hint in suspects:
+        if is_so:
+            yield path, tell(said).format(**names), tell(hint).format(**names)
 
 
 def check_keys(text: str) -> None:

@@ -12,16 +12,17 @@ import gettext
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
 from decimal import Decimal
 from functools import cache, lru_cache
 from pathlib import Path
 from string import Formatter
-from typing import Any
+from typing import Any, TypeVar
 
 from tmm_sheets.resources import template
 
+T = TypeVar("T")
 CODE = "en"
 """Language that the code itself is written in."""
 
@@ -43,6 +44,18 @@ _FRACTIONS = (float, Decimal)
 _paper = ContextVar("paper", default=SHEETS)
 _reader = ContextVar("reader", default=MESSAGES)
 _asked = ContextVar("asked", default="")
+paper = _paper.get
+"""Language of what stands on the paper."""
+set_paper = _paper.set
+"""The paper's language from here on: for a command that has one project."""
+reader = _reader.get
+"""Language of messages and reports."""
+set_reader = _reader.set
+"""The reader's language from here on."""
+asked = _asked.get
+"""Language of the paper that the person asked for; empty for none."""
+ask_paper = _asked.set
+"""Language that the person asks for whatever a project says; empty for none."""
 
 
 @cache
@@ -50,49 +63,24 @@ def _catalogue(language: str) -> gettext.NullTranslations:
     return gettext.translation(DOMAIN, template("locale"), [language], fallback=True)
 
 
-def paper() -> str:
-    """Language of what stands on the paper."""
-    return _paper.get()
-
-
-def reader() -> str:
-    """Language of messages and reports."""
-    return _reader.get()
-
-
 @contextmanager
-def on_paper(language: str) -> Iterator[None]:
-    """The paper's language meanwhile."""
-    token = _paper.set(language)
+def meanwhile(variable: ContextVar[T], value: T) -> Iterator[None]:
+    """A variable has another value meanwhile."""
+    token = variable.set(value)
     try:
         yield
     finally:
-        _paper.reset(token)
+        variable.reset(token)
 
 
-def ask_paper(language: str) -> None:
-    """Language that the person asks for whatever a project says; empty for none."""
-    _asked.set(language)
-
-
-def asked() -> str:
-    """Language of the paper that the person asked for; empty for none."""
-    return _asked.get()
+def on_paper(language: str) -> AbstractContextManager[None]:
+    """The paper's language meanwhile."""
+    return meanwhile(_paper, language)
 
 
 def of_project(language: str | None) -> str:
     """Language of a project's sheets: the one asked for, its own, or Russian."""
     return _asked.get() or language or SHEETS
-
-
-def set_paper(language: str) -> None:
-    """The paper's language from here on: for a command that has one project."""
-    _paper.set(language)
-
-
-def set_reader(language: str) -> None:
-    """The reader's language from here on."""
-    _reader.set(language)
 
 
 def of_locale(environment: Mapping[str, str] = os.environ) -> str:
@@ -169,7 +157,8 @@ def marked_n(one: str, many: str) -> tuple[str, str]:
 
 def tr(text: str) -> str:
     """The text as it stands on the paper; fields in braces stay for ``format``."""
-    return _text(_catalogue(_paper.get()).gettext(text), _paper.get()) if text else text
+    language = _paper.get()
+    return _text(_catalogue(language).gettext(text), language) if text else text
 
 
 def tr_in(context: str, text: str) -> str:
@@ -184,7 +173,8 @@ def tr_n(one: str, many: str, n: int) -> str:
 
 def tell(text: str) -> str:
     """The text as the person at the machine reads it."""
-    return _text(_catalogue(_reader.get()).gettext(text), _reader.get()) if text else text
+    language = _reader.get()
+    return _text(_catalogue(language).gettext(text), language) if text else text
 
 
 def tell_n(one: str, many: str, n: int) -> str:

@@ -168,7 +168,8 @@ def _rows_of(bench: Bench, program: type[PeerProgram], mechanism: str, m: Mechan
                     *what, turn.n, None, None, (f"left out at {turn.n:g} positions: it would take too long")
                 )
             elif quantity in runs:
-                found = bench.record(what, turn.n, partial(_guarded, runs[quantity]), partial(judge.error, quantity))
+                bench.row(what, turn.n, partial(_guarded, runs[quantity]), partial(judge.error, quantity))
+                found = bench.records.pop()
             else:
                 found = BenchRecord(*what, turn.n, None, None, reason or ("it does not give them"))
             bench.records.append(PeerRecord(**vars(found), mechanism=mechanism, quantity=quantity, program=name))

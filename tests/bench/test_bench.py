@@ -15,7 +15,8 @@ from tests.methods.linkage import shaper_truth, statics
 from tests.methods.linkage import truth as other
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.lab.bench import diagrams, emission, linkages, profiles, truth
+from tmm_sheets.lab.bench import diagrams, linkages, profiles, truth
+from tmm_sheets.lab.bench import records as records_of
 from tmm_sheets.lab.bench.records import Bench, BenchRecord, as_json, fastest, table
 from tmm_sheets.lab.bench.records import diagrams as drawn_fields
 
@@ -125,7 +126,9 @@ def test_jumps_that_are_no_borders_spoil_the_order(records):
 
 
 def test_files_have_no_error_but_a_time():
-    found = measured(emission)
+    bench = Bench(quick=True)
+    records_of.files_written(bench)
+    found = bench.records
     assert [r.method for r in found] == ["dxf", "pdf", "svg", "png, 100 dots per inch", "hpgl"]
     assert all(r.error is None and r.seconds > 0 and r.note.endswith("kB") for r in found)
 

@@ -11,7 +11,7 @@ import pytest
 from tests.few import few
 from tmm_sheets import apart
 from tmm_sheets.compare.photo import pdf_page, photograph
-from tmm_sheets.errors import CannotBuild
+from tmm_sheets.errors import BadInput, CannotBuild
 
 pytest.importorskip("pypdfium2")
 ROOT = Path(__file__).parents[2]
@@ -78,3 +78,9 @@ def test_a_page_is_drawn(tmp_path):
     middle = pixels[made["height"] // 2 * made["stride"]:][: made["width"] * made["channels"]]
     assert 0.4 < middle.index(min(middle)) / len(middle) < 0.6
     assert pdf_page.drawn(b"%PDF-1.4 rubbish", 50.0, 10, 10)[0]["kind"] == "unreadable"
+
+
+def test_a_page_that_is_none_is_told(tmp_path):
+    (tmp_path / "x.pdf").write_bytes(pdf([("0 0 m 9 9 l S", "")]).replace(b"/Kids [", b"/Kids [9 0 R "))
+    with pytest.raises(BadInput, match=r"x\.pdf: is not a PDF that can be read: Failed to load page"):
+        photograph.read(tmp_path / "x.pdf")

@@ -12,7 +12,7 @@ import tmm_sheets
 from tests.few import few
 from tests.test_docs import parsed
 from tmm_sheets.__main__ import run
-from tmm_sheets.optimising import optimum, picture, wishes
+from tmm_sheets.optimising import optimum, wishes
 
 DOC = (Path(__file__).parents[2] / "docs" / "optimise.md").read_text("utf-8")
 EXAMPLES = re.findall(r"^```sh\n(.*?)\n```\n\n```text\n(.*?)^```$", DOC, re.MULTILINE | re.DOTALL)
@@ -35,8 +35,9 @@ def test_examples_are_no_worse_than_a_grid(p, command, said, tmp_path):
     assert str(found).splitlines() == said.splitlines()
     s = found.search
     known = optimum._Known(p.project, optimum.POSITIONS)
+    names = tuple(dict.fromkeys(name for w in (s.wish, *(w for b in s.bounds for w in (b.left, b.right))) for name in w.names))
     way = (optimum._Quick if s.by_function else optimum._Whole)(
-        known, s.varied, lambda c: p.with_(c).project, optimum._names(s.wish, s.bounds))
+        known, s.varied, lambda c: p.with_(c).project, names)
     grid = optimum._Asked(s.varied, s.wish, s.bounds, s.most, way, 0, lambda n: None)
     along = 41 if s.by_function else 11
     for shares in itertools.product(np.linspace(0, 1, along), repeat=len(s.varied)):
@@ -47,7 +48,7 @@ def test_examples_are_no_worse_than_a_grid(p, command, said, tmp_path):
     # The file gives the numbers that are told.
     again = tmm_sheets.open(found.opened.save(tmp_path / "best.toml"))
     assert s.wish(way.of(again.project)) == pytest.approx(s.best.value, rel=1e-11)
-    assert picture.svg(s).startswith(b"<?xml")
+    assert s.svg().startswith(b"<?xml")
 
 
 def test_there_are_three():

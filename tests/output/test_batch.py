@@ -55,6 +55,17 @@ def mine(tmp_path):
     return file, tmp_path / "out", build
 
 
+def test_a_long_list_of_missing_projects(tmp_path, monkeypatch, capsys):
+    """Nothing is guessed of each, which would cost a look at all names."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(catalogue, "_meant", None)
+    Path("list").write_text("".join(f"missing{n}\n" for n in range(300)), encoding="utf-8")
+    assert run(["build", "--list", "list", "-o", "o", "--jobs", "1"]) == 1
+    said = capsys.readouterr().err.splitlines()
+    assert said[0] == "not built: 300 of 300"
+    assert said[1].split(maxsplit=1) == ["missing0", 'unknown project "missing0": neither a shipped name nor a file']
+
+
 # --- skipping ---------------------------------------------------------------------------------------------------------
 
 

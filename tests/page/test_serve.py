@@ -392,6 +392,21 @@ def test_an_endless_file_is_stopped():
     assert "more than 1 seconds" in work(endless, Limits(1))["problem"]
 
 
+def broken(asked, say):
+    """A job with a defect."""
+    raise KeyError(jobs.opened(asked).variant.cam.stroke)
+
+
+def test_a_defect_is_told_and_the_next_asked_is_answered():
+    said = work(broken, Limits(), text=CAM, name="cam")["problem"]
+    error, _, places = said.partition("\n    what led to it is kept in ")
+    assert error == "internal error: KeyError: 0.055"
+    report, least = (Path(place).read_text(encoding="utf-8") for place in places.split(", "))
+    assert report.startswith("tmm-sheets serve broken\n")
+    assert len(least.splitlines()) == 10
+    assert "more than 1 seconds" in work(endless, Limits(1))["problem"]
+
+
 def hungry(asked, say):
     return {"n": len(bytearray(1_000_000_000))}
 

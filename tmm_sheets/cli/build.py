@@ -27,7 +27,7 @@ from tmm_sheets.cli.options import (
     title_names,
     titled,
 )
-from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of, told_of
+from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
 from tmm_sheets.localized_cli import argument, command, option
 from tmm_sheets.progress import Bar, Progress
 from tmm_sheets.words import marked, tell
@@ -221,13 +221,19 @@ def run_watch(project: str, corrected: bool, sheets: tuple[int, ...], formats: t
             project=project, command=quoting.command("new", "my", "--from", project)))
     path = catalogue.located(project)
     click.echo(tell("watching {file}, Ctrl-C ends it").format(file=path), err=True)
+
+    def draw(file: str | Path) -> None:
+        build_one(str(file), Order(sheets, formats, {}, corrected, names=title_names()), output)
+
     for _ in files.saved((path, path.parent / title_entries.FILE)):
         try:
-            build_one(project, Order(sheets, formats, {}, corrected, names=title_names()), output)
+            draw(project)
         except BrokenPipeError:
             raise  # nobody listens
         except Exception as e:
-            click.echo(told_of(e), err=True)
+            from tmm_sheets import defects
+
+            click.echo(defects.told(e, ("watch", project), path, draw), err=True)
 
 
 @command("roster")

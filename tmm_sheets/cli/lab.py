@@ -47,7 +47,7 @@ def run_stress(cases: int, seed: int, single: int | None) -> None:
     from tmm_sheets.lab.stress import cases as stressed
 
     if single is not None:
-        worst = stressed.run_one(seed, single)
+        worst = stressed.run(1, seed, first=single, million=False)
     else:
         with Progress() as progress:
             worst = stressed.run(

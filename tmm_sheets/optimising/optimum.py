@@ -10,9 +10,10 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from io import BytesIO
 from itertools import product
 from math import floor, inf, isfinite, log10, nan
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,12 +25,10 @@ from tmm_sheets.construction.step import Reported, part_of, value_of
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.numbers import listed, of_reader
 from tmm_sheets.optimising.wishes import Bound, Values, Wish, bound, wish
+from tmm_sheets.project import Project
 from tmm_sheets.result_files import leaves
 from tmm_sheets.task import edited_text, units
 from tmm_sheets.words import tell
-
-if TYPE_CHECKING:
-    from tmm_sheets.project import Project
 
 KINEMATIC = ("positions", "velocities", "accelerations")
 """Parts whose numbers at a crank angle follow from the lengths alone: one function gives them for other lengths."""
@@ -134,6 +133,45 @@ class Optimum:
             n=len(self.trials), lost=lost,
             how=tell("by one function") if self.by_function else tell("each a project made anew"))]
 
+    def svg(self) -> bytes:
+        """The search as a picture: a diagram for each number that was varied, with the best marked, and the tries in order."""
+        from matplotlib import rc_context
+        from matplotlib.figure import Figure
+
+        sign = -1 if self.most else 1
+        found = [t for t in self.trials if isfinite(t.value)]
+        kept, missed = [t for t in found if not t.missed], [t for t in found if t.missed]
+        figure = Figure(figsize=(4.5 * (len(self.varied) + 1), 4), layout="constrained")
+        axes = figure.subplots(1, len(self.varied) + 1, sharey=True, squeeze=False)[0]
+
+        def values(some: list[Trial]) -> list[float]:
+            return [sign * t.value for t in some]
+
+        for k, v in enumerate(self.varied):
+            axes[k].plot([t.numbers[k] for t in missed], values(missed), "x", color="0.7", markersize=4,
+                         label=tell("misses a bound"))
+            axes[k].plot([t.numbers[k] for t in kept], values(kept), ".", color="tab:blue", label=tell("tried"))
+            axes[k].plot(self.best.numbers[k], sign * self.best.value, "o", color="tab:red", fillstyle="none",
+                         markersize=9, label=tell("best"))
+            axes[k].set(xlabel=", ".join(filter(None, (v.name, v.unit))), xlim=(v.low, v.high))
+        best, so_far = [], self.trials[0]
+        for t in self.trials:
+            so_far = min(so_far, t, key=lambda one: one.key)
+            best.append(sign * so_far.value if isfinite(so_far.value) and not so_far.missed else float("nan"))
+        axes[-1].step(range(1, len(best) + 1), best, where="post", color="tab:red")
+        axes[-1].set(xlabel=tell("tries"))
+        axes[0].set(ylabel=self.wish.text)
+        if kept:  # far outliers among the others leave nothing to be seen
+            low, high = min(values(kept)), max(values(kept))
+            axes[0].set_ylim(low - 0.05 * (high - low or 1), high + 0.05 * (high - low or 1))
+        for ax in axes:
+            ax.grid(linewidth=0.4, alpha=0.6)
+        axes[0].legend(fontsize="small")
+        buffer = BytesIO()
+        with rc_context({"svg.hashsalt": self.wish.text, "svg.fonttype": "none"}):
+            figure.savefig(buffer, format="svg", metadata={"Date": None})
+        return buffer.getvalue()
+
 
 def varied(text: str, data: Mapping[str, Any]) -> Varied:
     """Read ``crank.length=70..90 mm``; ``data`` are the tables of the project file.
@@ -159,8 +197,7 @@ def varied(text: str, data: Mapping[str, Any]) -> Varied:
         said = tell("{text}: expected a range in a unit such as that of {own}, which the file has")
         raise BadInput(said.format(text=text, own=own))
     whole = isinstance(own, int) and not isinstance(own, bool) and a == int(a) and b == int(b)
-    decimals = 0 if whole else max(0, -floor(log10((b - a) / STEPS)))
-    return Varied(name, a, b, unit, decimals, whole)
+    return Varied(name, a, b, unit, 0 if whole else max(0, -floor(log10((b - a) / STEPS))), whole)
 
 
 def optimum(project: Project, changed: Callable[[Mapping[str, Any]], Project], vary: Sequence[str], aim: str, *, most: bool = False,
@@ -200,7 +237,8 @@ def optimum(project: Project, changed: Callable[[Mapping[str, Any]], Project], v
         raise BadInput(tell("nothing is varied"), tell("for example {wish}").format(wish='--vary "crank.length=70..90 mm"'))
     known = _Known(project, positions)
     wishes = wish(aim, known.names), tuple(bound(text, known.names) for text in subject_to)
-    names = _names(*wishes)
+    names = tuple(dict.fromkeys(name for w in (wishes[0], *(w for b in wishes[1] for w in (b.left, b.right))) for name in w.names))
+
     def found(way: _Whole) -> Optimum:
         return _Asked(some, *wishes, most, way, tries, say).run()
 
@@ -208,10 +246,6 @@ def optimum(project: Project, changed: Callable[[Mapping[str, Any]], Project], v
     if quick.ready and quick.keeps((best := found(quick)).best.numbers):
         return best
     return found(_Whole(known, some, changed, names))
-
-
-def _names(of: Wish, bounds: Iterable[Bound]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys((*of.names, *(name for b in bounds for w in (b.left, b.right) for name in w.names))))
 
 
 class _Known:
@@ -230,8 +264,7 @@ class _Known:
     def told(self, project: Project, names: Iterable[str]) -> dict[str, Any]:
         """Results by their names, whose numbers are the steps they come from."""
         parts = dict.fromkeys("positions" if (part := name.partition(".")[0]) == "cycle" else part for name in names)
-        angles = self.angles if {*parts} & {*OF_LINKAGE} else None
-        return dict(leaves(results.told(project, parts, phi=angles)))
+        return dict(leaves(results.told(project, parts, phi=self.angles if {*parts} & {*OF_LINKAGE} else None)))
 
 
 class _Whole:
@@ -281,6 +314,7 @@ class _Quick(_Whole):
         low, high = tuple(v.low for v in self.some), tuple(v.high for v in self.some)
         ends = [low, high, (low[0], *high[1:]), tuple(v.at(0.5) for v in self.some)]
         self.ready = len(self.told) == len(names) and all(map(self.agrees, ends))
+
     def values(self, numbers: Sequence[float]) -> Values:
         """The results of some numbers; NaN where they have none."""
         given = {v.name: v.si(x) for v, x in zip(self.some, numbers, strict=True)}

@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets import catalogue, files, kept, quoting, spelling, words
-from tmm_sheets.errors import BadInput, CannotBuild, Stopped, told_of
+from tmm_sheets.errors import BadInput, CannotBuild, Stopped
 from tmm_sheets.output.build_store import current, outlet, put, record_of
 from tmm_sheets.output.building import Order, build, with_room
 from tmm_sheets.program import fingerprint, program
@@ -76,28 +76,38 @@ def one(task: Task, order: Order, parent: Path) -> Outcome:
 
 
 def _one(task: Task, order: Order, parent: Path) -> Outcome:
-    project = task.project
-    warnings: tuple[str, ...] = ()
     words.set_reader(order.reader)
     if not order.kept:
         kept.forgo()
+    warnings: list[str] = []
     try:
-        variant = with_room(catalogue.read(project, order.corrected))
-        warnings = tuple(variant.warnings)
-        own = {key: text for key, text in (("student", task.student), ("group", task.group)) if text}
-        names = replace(order.names, options={**order.names.options, **own})
-        variant = names.filled(variant)
-        folder = parent / (task.folder or files.folder_name(variant.stem))
-        built = build(variant, order, order.outlet(folder))
-        handed = dict[str, bool]()
-        if task.student:
-            handed, said = _hand_out(built.opened, folder, order.force, names.options)
-            warnings += said
+        return _built(task, order, parent, warnings)
     except Exception as e:
-        return Outcome(project, told_of(e), warnings=warnings)
+        from tmm_sheets import defects
+
+        file = Path(task.project)
+        problem = defects.told(e, ("build", task.project), file if file.is_file() else None,
+                               lambda path: _built(task._replace(project=str(path)), order, parent, []))
+        return Outcome(task.project, problem, warnings=tuple(warnings))
+
+
+def _built(task: Task, order: Order, parent: Path, warnings: list[str]) -> Outcome:
+    """The outcome of a project; what is to be said of it goes to ``warnings``, too."""
+    variant = with_room(catalogue.read(task.project, order.corrected, guessed=bool(task.student)))  # a batch tells one line of each
+    warnings += variant.warnings
+    own = {key: text for key, text in (("student", task.student), ("group", task.group)) if text}
+    names = replace(order.names, options={**order.names.options, **own})
+    variant = names.filled(variant)
+    folder = parent / (task.folder or files.folder_name(variant.stem))
+    built = build(variant, order, order.outlet(folder))
+    handed = dict[str, bool]()
+    if task.student:
+        handed, said = _hand_out(built.opened, folder, order.force, names.options)
+        warnings += said
+    warnings += built.warnings
     made = len(built.sizes)
     problem = "" if built.refused is None else str(built.refused)
-    return Outcome(project, problem, made, len(built.paths) - made, sum(built.sizes.values()), warnings + built.warnings,
+    return Outcome(task.project, problem, made, len(built.paths) - made, sum(built.sizes.values()), tuple(warnings),
                    handed=tuple(handed.items()))
 
 
@@ -170,15 +180,20 @@ def carry_out(works: Sequence[Task], order: Order, parent: Path, workers: int) -
     context = multiprocessing.get_context(method)
     told, end = context.Pipe(duplex=False)
     with told, end, _signals(lambda: end.send_bytes(b".")) as signals:
-        with ProcessPoolExecutor(workers, context, initializer=_start, initargs=(told,)) as pool:
-            tasks = {pool.submit(several, chunk, order, parent): chunk for chunk in chunks}
-            for task in as_completed(tasks):
-                try:
-                    yield from task.result()
-                except BrokenProcessPool:
-                    if not signals:  # they went to all processes then
-                        why = tell("its process was killed, perhaps for want of memory: repeat the command with fewer --jobs")
-                        yield from (Outcome(work.project, why) for work in tasks[task])
+        try:
+            with ProcessPoolExecutor(workers, context, initializer=_start, initargs=(told,)) as pool:
+                tasks = {pool.submit(several, chunk, order, parent): chunk for chunk in chunks}
+                for task in as_completed(tasks):
+                    try:
+                        yield from task.result()
+                    except BrokenProcessPool:
+                        if not signals:  # they went to all processes then
+                            why = tell("its process was killed, perhaps for want of memory: repeat the command with fewer --jobs")
+                            yield from (Outcome(work.project, why) for work in tasks[task])
+        except OSError:  # the system gives no more pipes or processes: those that began would wait for work for ever
+            for process in multiprocessing.active_children():
+                process.kill()
+            raise
         if signals:
             raise Stopped(signals[0])
 

@@ -6,11 +6,16 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.task.family_folder import FolderFamily
+from tmm_sheets.task.variant import Variant
 from tmm_sheets.words import tell
+
+NAMES: dict[str, Any] = {"project": {"name", "title", "variant"}, "title_block": True, "given": True}
+"""What a project file says beside its numbers: ciphers that differ in nothing else are assembled once."""
 
 
 @dataclass(frozen=True)
@@ -33,16 +38,29 @@ def tried(folder: Path, quick: bool = False, say: Callable[[str], None] = lambda
     """
     family = FolderFamily(folder)
     for machine in family.rules.machine:
+        assembled: dict[str, tuple[str, str]] = {}
         for name in family.every(machine):
             say(name)
+            warnings: tuple[str, ...] = ()
             try:
                 variant = family.read(name)
-                if not quick:
-                    Project(variant).check()
-            except (BadInput, CannotBuild) as e:
-                yield Tried(name, f"{family.name}/{machine}", str(e))
-            else:
-                yield Tried(name, f"{family.name}/{machine}", "", variant.warnings)
+                numbers = variant.model_dump_json(exclude=NAMES)
+                if not quick and numbers not in assembled:
+                    assembled[numbers] = name, _refused(variant)
+                first, problem = assembled.get(numbers, (name, ""))
+                problem = problem.replace(first, name)
+                warnings = variant.warnings
+            except BadInput as e:
+                problem = str(e)
+            yield Tried(name, f"{family.name}/{machine}", problem, () if problem else warnings)
+
+
+def _refused(variant: Variant) -> str:
+    try:
+        Project(variant).check()
+    except (BadInput, CannotBuild) as e:
+        return str(e)
+    return ""
 
 
 def table(found: list[Tried]) -> str:

@@ -102,7 +102,13 @@ def _carry_out(end: Connection, job: Job, asked: Mapping[str, str], folder: str,
     except OSError as e:
         say(problem=reason_of(e))
     except Exception as e:
-        say(problem=told_of(e))
+        from tmm_sheets import defects
+
+        file = Path("asked.toml")
+        with suppress(OSError):
+            file.write_text(asked.get("text", ""), encoding="utf-8")
+        say(problem=defects.told(e, ("serve", job.__name__), file,
+                                 lambda path: job({**asked, "text": path.read_text(encoding="utf-8")}, lambda **_: None)))
 
 
 def _limit(limits: Limits) -> None:

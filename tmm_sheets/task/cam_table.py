@@ -12,8 +12,8 @@ from typing import Any
 
 from tmm_sheets.task import units
 from tmm_sheets.task.values import diagram, levelled
-from tmm_sheets.toml_lines import Found
-from tmm_sheets.words import tell
+from tmm_sheets.toml_lines import Found, wrong
+from tmm_sheets.words import marked, tell
 
 LAW = "displacements"
 OWN = ("fall_law", "table", "fall_table", "rise", "upper_dwell", "fall", "stroke", "swing")
@@ -117,42 +117,26 @@ def check_cam(data: dict[str, Any]) -> Iterator[Found]:
     cam = data.get("cam")
     if not isinstance(cam, dict):
         return
-    follower = cam.get("follower")
-    if isinstance(follower, str) and follower in FOLLOWER_KEYS:
-        yield from _of_follower(cam, follower)
+    follower = str(cam.get("follower"))
+    must, may = FOLLOWER_KEYS.get(follower, ((), ()))
+    others = {key for keys in FOLLOWER_KEYS.values() for key in (*keys[0], *keys[1])} - {*must, *may} if must else {*()}
+    for key in (*(key for key in must if key not in cam and not (key in OWN and LAW in cam)), *others.intersection(cam)):
+        yield from wrong((
+            (key not in cam, ("cam", key), marked('missing; follower = "{follower}" needs it, for example {key} = {example}'), ""),
+            (key in cam, ("cam", key), marked('follower = "{follower}" has no such key'), marked("its own keys are {keys}")),
+        ), follower=follower, key=key, example=EXAMPLES.get(key), keys=", ".join((*must, *may)))
     for law, table in (("law", "table"), ("fall_law", "fall_table")):
-        if cam.get(law) == "table" and table not in cam:
-            said = tell('missing; {law} = "table" needs it, for example {table} = {example}')
-            yield ("cam", table), said.format(law=law, table=table, example=EXAMPLES[table]), ""
-        if cam.get(law) == LAW and LAW not in cam:
-            yield ("cam", law), tell("needs the table displacements"), ""
-        if table in cam and cam.get(law) != "table":
-            yield ("cam", table), tell('is read with {law} = "table" only').format(law=law), ""
-    if "centre" in cam and "base_radius" in cam:
-        yield ("cam", "centre"), tell("a given base_radius tells where the axis is"), tell("leave one of them out")
-    if "centre_distance" in cam and "base_radius" not in cam:
-        yield ("cam", "centre_distance"), tell("goes with base_radius only"), ""
-
-
-def _of_follower(cam: dict[str, Any], follower: str) -> Iterator[Found]:
-    must, may = FOLLOWER_KEYS[follower]
-    told = OWN if LAW in cam else ()
-    for key in must:
-        if key not in cam and key not in told:
-            yield (
-                ("cam", key),
-                tell('missing; follower = "{follower}" needs it, for example {key} = {example}').format(
-                    follower=follower, key=key, example=EXAMPLES[key]
-                ),
-                "",
-            )
-    others = {key for keys in FOLLOWER_KEYS.values() for key in (*keys[0], *keys[1])} - {*must, *may}
-    for key in cam:
-        if key in others:
-            yield (
-                ("cam", key),
-                tell('follower = "{follower}" has no such key').format(follower=follower),
-                tell("its own keys are {keys}").format(keys=", ".join((*must, *may))),
-            )
-    if follower == "flat" and cam.get("closure") == "geometric":
-        yield ("cam", "closure"), tell('expected "force": the second disc of a geometric closure needs a roller'), ""
+        yield from wrong((
+            (cam.get(law) == "table" and table not in cam, ("cam", table),
+             marked('missing; {law} = "table" needs it, for example {table} = {example}'), ""),
+            (cam.get(law) == LAW and LAW not in cam, ("cam", law), marked("needs the table displacements"), ""),
+            (table in cam and cam.get(law) != "table", ("cam", table), marked('is read with {law} = "table" only'), ""),
+        ), law=law, table=table, example=EXAMPLES[table])
+    yield from wrong((
+        (follower == "flat" and cam.get("closure") == "geometric", ("cam", "closure"),
+         marked('expected "force": the second disc of a geometric closure needs a roller'), ""),
+        ("centre" in cam and "base_radius" in cam, ("cam", "centre"), marked("a given base_radius tells where the axis is"),
+         marked("leave one of them out")),
+        ("centre_distance" in cam and "base_radius" not in cam, ("cam", "centre_distance"),
+         marked("goes with base_radius only"), ""),
+    ))

@@ -13,7 +13,6 @@ from decimal import Decimal, InvalidOperation
 from functools import cached_property
 from pathlib import Path
 from string import Template
-from typing import TYPE_CHECKING
 
 from pydantic import Field
 
@@ -22,11 +21,8 @@ from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.task import family_tables, messages
 from tmm_sheets.task.family_tables import SOURCE, Choice, Cipher, CipherForm, CipherTable, Row, filled, of_signs
 from tmm_sheets.task.schema import Table
-from tmm_sheets.task.variant import Misprint
+from tmm_sheets.task.variant import Misprint, Variant, parse
 from tmm_sheets.words import marked, tell
-
-if TYPE_CHECKING:
-    from tmm_sheets.task.variant import Variant
 
 FILE = "family.toml"
 class DerivedTable(Table):
@@ -152,12 +148,10 @@ class FolderFamily:
         BadInput
             when there is no such machine or cipher, or something is wrong in the folder.
         """
-        from tmm_sheets.task import variant
-
         pieces, doubts, remarks = self._filled_in(name, corrected)
         told = (*remarks, *(doubt.warning() for doubt in doubts))
         try:
-            return variant.parse("".join(text for _, text in pieces), name, told, doubts)
+            return parse("".join(text for _, text in pieces), name, told, doubts)
         except BadInput as e:
             raise BadInput(_of_scheme(problem, pieces) for problem in e.problems) from None
 

@@ -11,20 +11,20 @@ from __future__ import annotations
 import ast
 import math
 import operator
+import random
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from pathlib import Path
 from string import Template
-from typing import Self
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, field_validator
 
 from tmm_sheets import csv_tables, toml_file
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.spelling import latin
-from tmm_sheets.task.schema import Table
+from tmm_sheets.task.schema import RuledTable
 from tmm_sheets.words import marked, tell
 
 ABOUT = ("table", "symbol")
@@ -89,10 +89,10 @@ class Row:
 
 def _holds(head: str, figure: str) -> bool:
     """Whether a column, or a row, is that of a figure."""
-    low, dots, high = head.partition("..")
-    if not dots:
-        return head == figure or (head.isdigit() and figure.isdigit() and int(head) == int(figure))
-    return low.strip().isdigit() and high.strip().isdigit() and int(low) <= int(figure) <= int(high)
+    low, dots, high = (part.strip() for part in head.partition(".."))
+    ends = (low, figure, high if dots else low)
+    return head == figure or (all(end.isdecimal() and len(end) <= LONGEST for end in ends)
+                              and int(ends[0]) <= int(figure) <= int(ends[2]))
 
 
 def read(path: Path, digits: str) -> list[Row]:
@@ -224,43 +224,6 @@ MOST_CIPHERS = 1000
 """Most ciphers that are gone through."""
 
 
-class CipherTable(Table):
-    """``[cipher]``, where digits at fixed places do not say it."""
-
-    form: str = Field(
-        description=marked('a regular expression with named parts, for example "(?P<year>[0-9]+)-(?P<number>[0-9]+)"'))
-    written: str = ""
-    """how it is printed, `$year-$number`; as it was typed unless told"""
-    letters: str = Field(description=marked('a letter for each digit that chooses, for example "abc"'))
-    digits: tuple[tuple[str, int], ...] = Field(
-        description=marked('the last digits of parts, for example [["year", 1], ["number", 2]]'))
-    padding: str = "0"
-    """what fills a part with too few digits, at its end"""
-    spelling: dict[str, str] = Field(default={})
-    """words in another alphabet"""
-
-    @field_validator("form")
-    @classmethod
-    def _compiles(cls, form: str) -> str:
-        try:
-            compiled(form)
-        except (re.error, RecursionError, OverflowError) as e:
-            raise ValueError(str(e)) from None
-        return form
-
-    @model_validator(mode="after")
-    def _parts_are_there(self) -> Self:
-        parts = {*compiled(self.form).groupindex}
-        chosen = sum(n for _, n in self.digits if n > 0)
-        if not {name for name, _ in self.digits} <= parts or chosen != len(self.letters) or any(n < 1 for _, n in self.digits):
-            raise ValueError(tell("expected digits of the parts of form, as many as there are letters"))
-        if len(self.padding) != 1:
-            raise ValueError(tell("expected one sign as padding"))
-        if not Template(self.written).is_valid() or not {*Template(self.written).get_identifiers()} <= parts:
-            raise ValueError(tell("expected written to be made of the parts of form, such as $year-$number"))
-        return self
-
-
 LONGEST, CHOICES = 100, 12
 """Signs of the longest cipher, and most alternatives, and parts that may be missing, of a form: each may double the time."""
 _OF_FORM = re.compile(r"""
@@ -294,6 +257,41 @@ def compiled(form: str) -> re.Pattern[str]:
     if choices > CHOICES:
         raise re.error(tell("a form has {most} alternatives at most").format(most=CHOICES))
     return re.compile(ways.replace("(\0", "(?P<").replace("(\1", "(?:"))
+
+
+class CipherTable(RuledTable):
+    """``[cipher]``, where digits at fixed places do not say it."""
+
+    form: str = Field(
+        description=marked('a regular expression with named parts, for example "(?P<year>[0-9]+)-(?P<number>[0-9]+)"'))
+    written: str = ""
+    """how it is printed, `$year-$number`; as it was typed unless told"""
+    letters: str = Field(description=marked('a letter for each digit that chooses, for example "abc"'))
+    digits: tuple[tuple[str, int], ...] = Field(
+        description=marked('the last digits of parts, for example [["year", 1], ["number", 2]]'))
+    padding: str = "0"
+    """what fills a part with too few digits, at its end"""
+    spelling: dict[str, str] = Field(default={})
+    """words in another alphabet"""
+
+    @field_validator("form")
+    @classmethod
+    def _compiles(cls, form: str) -> str:
+        try:
+            compiled(form)
+        except (re.error, RecursionError, OverflowError) as e:
+            raise ValueError(str(e)) from None
+        return form
+
+    rules = (
+        (marked("expected digits of the parts of form, as many as there are letters"),
+         lambda cipher: not {name for name, _ in cipher.digits} <= {*compiled(cipher.form).groupindex}
+         or sum(n for _, n in cipher.digits) != len(cipher.letters) or any(n < 1 for _, n in cipher.digits)),
+        (marked("expected one sign as padding"), lambda cipher: len(cipher.padding) != 1),
+        (marked("expected written to be made of the parts of form, such as $year-$number"),
+         lambda cipher: not Template(cipher.written).is_valid()
+         or not {*Template(cipher.written).get_identifiers()} <= {*compiled(cipher.form).groupindex}),
+    )
 
 
 def of_signs(signs: str) -> CipherTable:
@@ -342,13 +340,18 @@ class CipherForm:
         return Cipher(written, parts, dict(zip(self.letters, figures, strict=True)))
 
     def every(self, example: str) -> Iterator[str]:
-        """Ciphers of all digits in the places of the example's, evenly spread where there are more than :data:`MOST_CIPHERS`."""
+        """Ciphers of all digits in the places of the example's; where there are more than :data:`MOST_CIPHERS`, so many of them.
+
+        They are drawn by lot, always the same ones: any even step would leave some digit at one figure.
+        """
         like = self.read(example)
         parts = dict.fromkeys(compiled(self.table.form).groupindex, "0") if like is None else like.parts
         counts = {name: max(n for other, n in self.table.digits if other == name) for name, _ in self.table.digits}
         total = sum(counts.values())
-        step = max(1, 10**total // MOST_CIPHERS)
-        for number in range(0, 10**total, step):
+        lot = random.Random(0)
+        numbers = (range(10**total) if 10**total <= MOST_CIPHERS else
+                   sorted(lot.randrange(10**total) for _ in range(MOST_CIPHERS)))
+        for number in numbers:
             left = f"{number:0{total}}"
             own = dict(parts)
             for name, n in counts.items():

@@ -174,8 +174,7 @@ def unit(hint: Any) -> str:
 
 def quantities(hint: Any) -> list[units.Quantity]:
     """The quantity that a type reads, of a list that of its members; one at most."""
-    found = [given["quantity"] for v in validators(hint) if "quantity" in (given := made_with(v))]
-    return found[:1]
+    return [given["quantity"] for v in validators(hint) if "quantity" in (given := made_with(v))][:1]
 
 
 def spaced(name: str) -> str:

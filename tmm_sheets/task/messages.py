@@ -13,10 +13,10 @@ from pydantic_core import ErrorDetails
 from tmm_sheets import toml_file
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task.schema import Table
-from tmm_sheets.task.units import Refused
+from tmm_sheets.task.units import Refused, shown
 from tmm_sheets.task.values import meant
 from tmm_sheets.toml_lines import KeyPath, TomlLines
-from tmm_sheets.words import either, tell
+from tmm_sheets.words import either, marked, tell
 
 T = TypeVar("T", bound=Table)
 
@@ -57,14 +57,17 @@ def said(error: ErrorDetails, whole: type[Table]) -> tuple[KeyPath, str, str]:
         return path, tell("expected {what}, not {given}").format(what=either(words), given=_quoted(given)), near
     if kind in ("tuple_type", "too_short", "too_long"):
         return path, tell("expected {what}").format(what=_description(whole, path)), _commas(error)
-    if kind in ("model_type", "model_attributes_type", "dict_type"):
-        return path, tell("expected a table, not {given}").format(given=_quoted(given)), tell(
-            "write it as [{table}] with a line for each key").format(table=path[0])
-    if kind == "string_type":
-        return path, tell("expected a text in quotes, not {given}").format(given=_quoted(given)), ""
-    if kind in ("bool_type", "bool_parsing"):
-        return path, tell("expected true or false, not {given}").format(given=_quoted(given)), ""
-    return path, f"{error['msg']}: {_quoted(given)}", ""
+    expected, hint = _OF_TYPES.get(kind, (f"{error['msg']}: {{given}}", ""))
+    return path, tell(expected).format(given=_quoted(given)), tell(hint).format(table=path[0])
+
+
+_TABLE = (marked("expected a table, not {given}"), marked("write it as [{table}] with a line for each key"))
+_OF_TYPES = {
+    **dict.fromkeys(("model_type", "model_attributes_type", "dict_type"), _TABLE),
+    "string_type": (marked("expected a text in quotes, not {given}"), ""),
+    **dict.fromkeys(("bool_type", "bool_parsing"), (marked("expected true or false, not {given}"), "")),
+}
+"""What is said, with a hint, where a value is of another type: by pydantic's names of errors."""
 
 
 def _commas(error: ErrorDetails) -> str:
@@ -77,13 +80,7 @@ def _commas(error: ErrorDetails) -> str:
 
 
 def _quoted(value: Any) -> str:
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, dict):
-        return tell("a table")
-    if isinstance(value, list):
-        return tell("a list")
-    return f'"{value}"' if isinstance(value, str) else str(value)
+    return str(value).lower() if isinstance(value, bool) else f'"{value}"' if isinstance(value, str) else shown(value)
 
 
 def table_of(annotation: Any) -> type[Table] | None:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from tmm_sheets import spelling
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.task.schema import CrankTable
-from tmm_sheets.toml_lines import Found, KeyPath
+from tmm_sheets.toml_lines import Found, KeyPath, wrong
 from tmm_sheets.words import both, marked, tell, tell_n
 
 
@@ -95,9 +95,9 @@ def _keys_of_kind(path: KeyPath, group: dict[str, Any], kind: int) -> Iterator[F
     if isinstance(group.get("outer"), list) and len(group["outer"]) != own.outer:
         said = tell_n("expected {n} point for a group of kind {kind}", "expected {n} points for a group of kind {kind}", own.outer)
         yield (*path, "outer"), said.format(n=own.outer, kind=kind), ""
-    if (links := _words(group.get("links"))) and len(links) != own.links:
-        yield ((*path, "links"), tell("expected {n} links for a group of kind {kind}").format(n=own.links, kind=kind),
-               tell("the triangle first, then its three legs") if own.links > 2 else "")
+    yield from wrong([(len(_words(group.get("links"))) not in (0, own.links), (*path, "links"),
+                       marked("expected {n} links for a group of kind {kind}"),
+                       marked("the triangle first, then its three legs") if own.links > 2 else "")], n=own.links, kind=kind)
 
 
 class _Names:
@@ -130,9 +130,8 @@ class _Names:
         seen: set[frozenset[str]] = set()
         for path, mesh in _tables(_table(self.data, "train"), "mesh"):
             wheels = [name for name in (mesh.get("sun"), mesh.get("ring"), mesh.get("planet")) if isinstance(name, str)]
-            if frozenset(wheels) in seen:
-                yield ("train", *path), tell("wheels {wheels} mesh already").format(wheels=both(wheels)), tell(
-                    "take one of the tables away, or give the other pair its own numbers")
+            yield from wrong([(frozenset(wheels) in seen, ("train", *path), marked("wheels {wheels} mesh already"), marked(
+                "take one of the tables away, or give the other pair its own numbers"))], wheels=both(wheels))
             seen.add(frozenset(wheels))
 
     @staticmethod
@@ -169,12 +168,8 @@ class _Names:
             return
         link = str(crank.get("link", "1"))
         yield from self.spelt(("crank", "link"), link, "link")
-        if link == FRAME:
-            yield (
-                ("crank", "link"),
-                tell('"{frame}" is the frame').format(frame=FRAME),
-                tell("give each moving link its own number, beginning with 1"),
-            )
+        yield from wrong([(link == FRAME, ("crank", "link"), marked('"{frame}" is the frame'),
+                           marked("give each moving link its own number, beginning with 1"))], frame=FRAME)
         self.on.setdefault(link, set())
         yield from self.known(("crank", "pivot"), crank.get("pivot"), self.on[FRAME], marked('unknown fixed point "{name}"'))
         if isinstance(crank.get("pivot"), str):
@@ -184,22 +179,19 @@ class _Names:
 
     def guide_names(self) -> Iterator[Found]:
         for path, guide in _tables(self.data, "guide"):
-            name = guide.get("name")
+            name, on_link = guide.get("name"), "link" in guide
             if isinstance(name, str):
                 yield from self.spelt((*path, "name"), name, "guide")
-                if name in self.guides:
-                    yield (
-                        (*path, "name"),
-                        tell('the guide "{name}" is there already').format(name=name),
-                        tell("give it another name"),
-                    )
+                yield from wrong([(name in self.guides, (*path, "name"), marked('the guide "{name}" is there already'),
+                                   marked("give it another name"))], name=name)
                 self.guides[name] = guide
-            if "link" in guide:
-                if not isinstance(guide.get("through"), str) or "towards" not in guide:
-                    yield path, tell('a guide on a moving link needs "through" and "towards", two points of the link'), ""
-            else:
-                if "towards" in guide:
-                    yield (*path, "towards"), tell("a fixed guide has none"), tell('give its "direction" as an angle')
+            yield from wrong((
+                (on_link and not (isinstance(guide.get("through"), str) and "towards" in guide), path,
+                 marked('a guide on a moving link needs "through" and "towards", two points of the link'), ""),
+                (not on_link and "towards" in guide, (*path, "towards"), marked("a fixed guide has none"),
+                 marked('give its "direction" as an angle')),
+            ))
+            if not on_link:
                 yield from self.known(
                     (*path, "through"), guide.get("through"), self.on[FRAME], marked('unknown fixed point "{name}"')
                 )
@@ -234,24 +226,24 @@ class _Names:
     def triad(self, path: KeyPath, group: dict[str, Any], links: list[str]) -> Iterator[Found]:
         """A triangle on three legs: its corners are points of it and of rods and sliders."""
         legs = _tables(group, "leg")
-        if "leg" in group and len(legs) != 3:
-            yield (*path, "leg"), tell("expected three legs"), tell("write [[group.leg]] three times")
+        yield from wrong([("leg" in group and len(legs) != 3, (*path, "leg"), marked("expected three legs"),
+                           marked("write [[group.leg]] three times"))])
         yield from self.new_links(path, links)
         triangle, *own = links if len(links) == 4 else ["", "", "", ""]
         for link in (triangle, *own):
             self.on.setdefault(link, set())
         named = f"W{triangle}"
-        if named in self.points:
-            yield (*path, "links"), tell('the point "{name}" is Assur\'s special point of link {link}').format(
-                name=named, link=triangle), tell("give the other point another name")
+        yield from wrong([(named in self.points, (*path, "links"),
+                           marked('the point "{name}" is Assur\'s special point of link {link}'),
+                           marked("give the other point another name"))], name=named, link=triangle)
         self.special.add(named)
         for (key, leg), link, nth in zip(legs, own, range(3), strict=False):
             here = (*path, *key)
             yield from self.known((*here, "outer"), leg.get("outer"), self.points, marked('unknown point "{name}"'))
             yield from self.guide_use((*here, "guide"), leg.get("guide"))
-            if "slot" in leg and nth != 1:
-                yield (*here, "slot"), tell("only the second leg may be a slider block in a slot"), tell(
-                    "change the order of the legs; a group with two slots is not built")
+            yield from wrong([("slot" in leg and nth != 1, (*here, "slot"),
+                               marked("only the second leg may be a slider block in a slot"),
+                               marked("change the order of the legs; a group with two slots is not built"))])
             block = [] if "slot" in leg else [link]
             yield from self.define((*here, "corner"), leg.get("corner"), triangle, *block)
             if isinstance(leg.get("outer"), str):
@@ -262,12 +254,8 @@ class _Names:
     def new_links(self, path: KeyPath, links: list[str]) -> Iterator[Found]:
         for i, link in enumerate(links):
             yield from self.spelt((*path, "links", i), link, "link")
-            if link in self.on or link in links[:i]:
-                yield (
-                    (*path, "links", i),
-                    tell('the link "{link}" is there already').format(link=link),
-                    tell("give each link its own number"),
-                )
+            yield from wrong([(link in self.on or link in links[:i], (*path, "links", i),
+                               marked('the link "{link}" is there already'), marked("give each link its own number"))], link=link)
 
     def guide_use(self, path: KeyPath, name: Any) -> Iterator[Found]:
         yield from self.known(path, name, set(self.guides), marked('unknown guide "{name}"'))
@@ -290,8 +278,8 @@ class _Names:
         while (item := next(filter(self.hangs, self.waiting), None)) is not None:
             self.waiting.remove(item)
             path, point = item
-            if point["from"] == point["towards"]:
-                yield (*path, "towards"), tell('expected another point than "from"'), ""
+            yield from wrong([(point["from"] == point["towards"], (*path, "towards"),
+                               marked('expected another point than "from"'), "")])
             yield from self.define((*path, "name"), point.get("name"), point["link"])
 
     def hangs(self, item: tuple[KeyPath, dict[str, Any]]) -> bool:
@@ -320,7 +308,7 @@ class _Names:
         begins = _table(self.data, "cycle").get("start") == "input"
         balancing = _table(self.data, "balancing").get("kind")
         by_force = balancing == "input force"
-        wrong: list[tuple[Any, KeyPath, str, str]] = [
+        yield from wrong((
             (driven and balancing in ("moment", "gear force"), ("balancing", "kind"),
              marked("what drives the mechanism is its [input]"), marked('write kind = "input force"')),
             (by_force and not driven, ("balancing", "kind"), marked("there is no [input]"),
@@ -329,13 +317,14 @@ class _Names:
              marked("tell in [input] which slider or cylinder drives the crank")),
             *((driven and key in crank, ("crank", key), marked("the [input] tells how the crank moves"), marked("leave it out"))
               for key in ("speed", "sense", "angular_acceleration")),
-            *((driven and key in self.data, (key,), marked("[{name}] needs a crank whose turning is given, not an [input]"),
-               marked("leave it out")) for key in ("friction", "flywheel")),
             (driven and not begins, ("cycle",), marked("the cycle is the stroke of [input]"), marked('write start = "input"')),
             ("start" in given and given["start"] == given.get("end"), ("input", "end"),
              marked("the stroke ends where it begins"), ""),
-        ]
-        yield from ((path, tell(said).format(name=path[0]), tell(hint)) for is_so, path, said, hint in wrong if is_so)
+        ))
+        for key in ("friction", "flywheel"):
+            yield from wrong([(driven and key in self.data, (key,),
+                               marked("[{name}] needs a crank whose turning is given, not an [input]"), marked("leave it out"))],
+                             name=key)
         for key in ("speed", "sense") if crank and not driven else ():
             if key not in crank:
                 yield ("crank", key), tell("missing; expected {what}").format(
@@ -365,8 +354,7 @@ class _Names:
             name = link.get("name")
             yield from self.known((*path, "name"), name, moving, marked('unknown link "{name}"'))
             if isinstance(name, str):
-                if name in seen:
-                    yield (*path, "name"), tell('the link "{name}" is described twice').format(name=name), ""
+                yield from wrong([(name in seen, (*path, "name"), marked('the link "{name}" is described twice'), "")], name=name)
                 seen.add(name)
                 yield from self.known(
                     (*path, "centre"),

@@ -146,8 +146,7 @@ def _two_blocks(made: _Tables, on: Driven) -> Driven:
     made.group(4, tell("kind 4: a block on the rocker before and a slider"),
                f'guides = ["{rail}", "{guide}"]\ninner = "{point}"\n')
     normal = middle / abs(middle)
-    height = 0.8 * abs(middle)
-    return Driven(point, [pivot + (z - pivot) * height / ((z - pivot) / normal).real for z in on.path])
+    return Driven(point, [pivot + (z - pivot) * (0.8 * abs(middle)) / ((z - pivot) / normal).real for z in on.path])
 
 
 def _slot_and_slider(made: _Tables, on: Driven) -> Driven:

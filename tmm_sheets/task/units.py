@@ -169,7 +169,7 @@ def read(value: Any, quantity: Quantity) -> tuple[float, float]:
     expected = tell(quantity.expected)
     example = _quoted(quantity)
     if isinstance(value, bool) or not isinstance(value, str | int | float):
-        raise Refused(tell(_NOT_THAT).format(expected=expected, given=_shown(value), example=example))
+        raise Refused(tell(_NOT_THAT).format(expected=expected, given=shown(value), example=example))
     if not isinstance(value, str):
         if not math.isfinite(value):
             raise Refused(tell(_NOT_FINITE).format(expected=expected, given=value))
@@ -214,7 +214,8 @@ def _quoted(quantity: Quantity) -> str:
     return quantity.example if quantity is NUMBER else f'"{quantity.example}"'
 
 
-def _shown(value: Any) -> str:
+def shown(value: Any) -> str:
+    """A value that is no number, as it is told."""
     names = {bool: marked("true or false"), list: marked("a list"), dict: marked("a table")}
     return tell(names[type(value)]) if type(value) in names else repr(value)
 

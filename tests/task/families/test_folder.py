@@ -197,3 +197,25 @@ def test_what_a_family_tells(folder):
     assert catalogue.read("department/pump@K-3").crank.length == catalogue.read("department/pump@K-31").crank.length
     assert catalogue.read("department/pump@К-37").warnings == ("department/pump is for ciphers with М, not with К", "long")
     assert sum(1 for _ in families.of("department/pump@M-1").every("pump")) == 100
+
+
+def test_ciphers_of_many_digits_are_tried_in_all_their_figures(folder, monkeypatch):
+    """A sample, always the same; ciphers whose digits choose the same numbers are assembled once."""
+    family = (folder / "family.toml").read_text("utf-8").replace('cipher = "ab"', 'cipher = "abcdefghijklmnopqrstuvwxyz"')
+    (folder / "family.toml").write_text(family.replace('"27"', f'"{"27" * 13}"'), encoding="utf-8")
+    names = [*family_folder.FolderFamily(folder).every("pump")]
+    assert names == [*family_folder.FolderFamily(folder).every("pump")]
+    assert len(names) == family_tables.MOST_CIPHERS
+    assert {len({*figures}) for figures in zip(*(name.partition("@")[2] for name in names), strict=True)} == {10}
+    checked = []
+    monkeypatch.setattr(Project, "check", lambda project: checked.append(project))
+    found = [*family_check.tried(folder)]
+    assert [len(found), len(checked)] == [2 * family_tables.MOST_CIPHERS, 200]
+
+
+@pytest.mark.parametrize(("head", "figure", "holds"), [
+    ("2", "2", True), ("2", "02", True), ("2", "3", False), ("0..4", "4", True), ("0 .. 4", "5", False), ("3..", "3", False),
+    ("..3", "3", False), ("²", "2", False), ("9" * 5000, "9", False), (f"0..{'9' * 5000}", "9", False), ("a", "a", True),
+    ("", "1", False)])
+def test_which_figures_a_column_is_for(head, figure, holds):
+    assert family_tables._holds(head, figure) == holds

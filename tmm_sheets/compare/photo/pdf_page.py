@@ -20,12 +20,12 @@ def drawn(data: bytes, dpi: float, most: int, few: float) -> tuple[dict[str, Any
 
     try:
         document = pypdfium2.PdfDocument(data)
+        pages = len(document)
+        page = document[0] if pages else None
     except pypdfium2.PdfiumError as e:
         return {"kind": "locked" if "password" in str(e).lower() else "unreadable", "why": str(e)}, b""
-    pages = len(document)
-    if not pages:
+    if page is None:
         return {"kind": "empty"}, b""
-    page = document[0]
     width, height = page.get_size()
     if not (isfinite(width) and isfinite(height) and 0 < max(width, height) <= 5 * min(width, height)):
         return {"kind": "shape", "width": width, "height": height}, b""

@@ -214,6 +214,5 @@ def _flywheel(bench: Bench) -> None:
 
 def rows(bench: Bench) -> None:
     """Graphical integration, excess work, flywheel."""
-    _integration(bench)
-    _excess(bench)
-    _flywheel(bench)
+    for measured in (_integration, _excess, _flywheel):
+        measured(bench)

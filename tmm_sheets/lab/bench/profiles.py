@@ -144,6 +144,7 @@ def _cams(bench: Bench) -> None:
 
     def points(n: int) -> Any:
         return c.at(np.asarray(2 * pi / n * np.arange(n), dtype=np.float64)).plan["F"].value
+
     def some(n: int, beside: float) -> tuple[Any, list[Any]]:
         """Numbers of some positions, and the true points there, or that share of a position beside them."""
         k = np.unique(np.linspace(0, n - 2, CHECKED).astype(int))
@@ -278,10 +279,8 @@ def rows(bench: Bench) -> None:
     ValueError
         when no set of tooth numbers is permitted.
     """
-    _cams(bench)
-    _involutes(bench)
-    _racks(bench)
-    _tooth_searches(bench)
+    for measured in (_cams, _involutes, _racks, _tooth_searches):
+        measured(bench)
 
 
 LIMITS = (30, 40, 60, 90, 120)

@@ -14,8 +14,11 @@ from math import isfinite
 from timeit import Timer
 from typing import Any, TypeVar
 
-from tmm_sheets import quoting
+from tmm_sheets import catalogue, quoting
+from tmm_sheets.drawing.marks import Drawing
 from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.files import ENDINGS
+from tmm_sheets.project import Project
 from tmm_sheets.version import __version__
 from tmm_sheets.words import tell
 
@@ -23,6 +26,8 @@ Found = TypeVar("Found")
 SCHEMA = 1
 PATIENCE = 0.15
 """Seconds after which no further repetition begins."""
+
+
 @dataclass(frozen=True)
 class BenchRecord:
     """One run.
@@ -64,18 +69,7 @@ class Bench:
 
     def row(self, what: tuple[str, str, str], value: float, run: Callable[[], Found], error: Callable[[Found], float] | None,
             note: str | Callable[[Found], str] = "") -> None:
-        """Measure a run and keep its record; see :meth:`record`."""
-        self.records.append(self.record(what, value, run, error, note))
-
-    def rows(self, what: tuple[str, str, str], values: Iterable[int], most: int, run: Callable[[int], Found],
-             error: Callable[[int, Found], float]) -> None:
-        """Measure runs of the values of a parameter, in a quick run of those up to ``most``."""
-        for value in self.upto(values, most):
-            self.row(what, value, partial(run, value), partial(error, value))
-
-    def record(self, what: tuple[str, str, str], value: float, run: Callable[[], Found], error: Callable[[Found], float] | None,
-               note: str | Callable[[Found], str] = "") -> BenchRecord:
-        """Measure a run.
+        """Measure a run and keep its record.
 
         Parameters
         ----------
@@ -92,12 +86,18 @@ class Bench:
         try:
             seconds, found = fastest(run, 0.0 if self.quick else PATIENCE)
             off = None if error is None else float(error(found))
+            said = note if isinstance(note, str) else note(found)
         except (CannotBuild, ArithmeticError, ValueError, MemoryError) as e:
-            reason = str(e).splitlines()[0] if str(e) else type(e).__name__
-            return BenchRecord(*what, value, None, None, reason)
+            seconds, off, said = None, None, str(e).splitlines()[0] if str(e) else type(e).__name__
         if off is not None and not isfinite(off):
-            return BenchRecord(*what, value, None, None, tell("not a number"))
-        return BenchRecord(*what, value, off, seconds, note if isinstance(note, str) else note(found))
+            seconds, off, said = None, None, tell("not a number")
+        self.records.append(BenchRecord(*what, value, off, seconds, said))
+
+    def rows(self, what: tuple[str, str, str], values: Iterable[int], most: int, run: Callable[[int], Found],
+             error: Callable[[int, Found], float]) -> None:
+        """Measure runs of the values of a parameter, in a quick run of those up to ``most``."""
+        for value in self.upto(values, most):
+            self.row(what, value, partial(run, value), partial(error, value))
 
 
 def fastest(run: Callable[[], Found], patience: float) -> tuple[float, Found]:
@@ -176,8 +176,10 @@ def as_json(records: Iterable[BenchRecord]) -> str:
     return json.dumps(tree, ensure_ascii=False, indent=1, allow_nan=False)
 
 
-FIELDS = ("linkages", "diagrams", "profiles", "emission")
+FIELDS = ("linkages", "diagrams", "profiles")
 """Modules that measure, in the order of the table."""
+
+
 def run(quick: bool, say: Callable[[str], None]) -> list[BenchRecord]:
     """Measure fields.
 
@@ -203,7 +205,32 @@ def run(quick: bool, say: Callable[[str], None]) -> list[BenchRecord]:
     bench = Bench(quick, say)
     for module in FIELDS:
         import_module(f"tmm_sheets.lab.bench.{module}").rows(bench)
+    files_written(bench)
     return bench.records
+
+
+DPI = 100
+FEW = 100
+"""Marks of a sheet in a quick run."""
+
+
+def files_written(bench: Bench) -> None:
+    """Every format with the smallest and the largest sheet of the shaper, without errors: there is no truth for them."""
+    from tmm_sheets.sheets.sheet import compose
+
+    project = Project(catalogue.read("lugansk/cam_flat" if bench.quick else "lugansk/shaper"))
+    drawings: list[Drawing] = []
+    for n in range(1, len(project.sheets) + 1):
+        bench.say(f"sheet {n}")
+        drawing = compose(project, n)
+        drawings.append(Drawing(drawing.width, drawing.height, drawing.title, drawing.marks[:FEW]) if bench.quick else drawing)
+    drawings.sort(key=lambda d: len(d.marks))
+    for form in ENDINGS:
+        settings, name = ({"dpi": DPI}, f"png, {DPI} dots per inch") if form == "png" else ({}, form)
+        render = partial(import_module(f"tmm_sheets.backends.{form}").render, **settings)
+        for drawing in drawings[::max(len(drawings) - 1, 1)]:
+            bench.row(("files", name, "marks"), len(drawing.marks), partial(render, drawing), None,
+                      lambda data: f"{len(data) / 1000:.0f} kB")
 
 
 LEAST = 2.0**-54
@@ -230,7 +257,13 @@ def _svg(field: str, rows: Sequence[BenchRecord]) -> bytes:
     axes = figure.subplots(1, 3 if judged else 1, squeeze=False)[0]
     colours = colormaps["tab10" if len(by_method) <= 10 else "tab20"]
     for k, (method, runs) in enumerate(by_method.items()):
-        _draw(axes, method, runs, {"marker": "o", "markersize": 3, "linewidth": 1, "color": colours(k)})
+        look: dict[str, Any] = {"marker": "o", "markersize": 3, "linewidth": 1, "color": colours(k)}
+        value, seconds = [r.value for r in runs], [float(r.seconds or 0) for r in runs]
+        axes[-1].loglog(value, seconds, label=method, **look)
+        if judged:
+            errors = [max(r.error or 0.0, LEAST) for r in runs]
+            axes[0].loglog(value, errors, **look)
+            axes[1].loglog(seconds, errors, **look)
     labels = ", ".join(dict.fromkeys(r.parameter for r in rows))
     axes[-1].set(xlabel=labels, ylabel="time, s")
     if judged:
@@ -244,13 +277,3 @@ def _svg(field: str, rows: Sequence[BenchRecord]) -> bytes:
     with rc_context({"svg.hashsalt": field, "svg.fonttype": "none"}):
         figure.savefig(buffer, format="svg", metadata={"Date": None})
     return buffer.getvalue()
-
-
-def _draw(axes: Any, method: str, runs: Sequence[BenchRecord], look: dict[str, Any]) -> None:
-    """One method in each of the diagrams of its field."""
-    value, seconds = [r.value for r in runs], [float(r.seconds or 0) for r in runs]
-    axes[-1].loglog(value, seconds, label=method, **look)
-    if len(axes) > 1:
-        errors = [max(r.error or 0.0, LEAST) for r in runs]
-        axes[0].loglog(value, errors, **look)
-        axes[1].loglog(seconds, errors, **look)

@@ -345,29 +345,20 @@ NUMBERS = (1, 2, 3, 4)
 """Columns of the table that hold numbers."""
 
 
-def run(cases: int, seed: int, say: Callable[[int], None] = lambda case: None, *, million: bool = True) -> dict[str, Worst]:
-    """Run cases 0 .. ``cases``-1 of a seed; ``say`` hears the number of each before it is run.
+def run(cases: int, seed: int, say: Callable[[int], None] = lambda case: None, *, first: int = 0,
+        million: bool = True) -> dict[str, Worst]:
+    """Run so many cases of a seed from the ``first`` on; ``say`` hears the number of each before it is run.
 
     Returns the worst of every invariant that some case tells of; ``million`` adds the memory of very many positions.
     """
     worst: dict[str, Worst] = {}
-    for case in range(cases):
+    for case in range(first, first + cases):
         say(case)
         scene, values = run_case(seed, case)
         for name, value in values:
             worst.setdefault(name, Worst()).take(value, case, scene)
     if million:
         worst[MEMORY] = Worst(1, memory(), 0, f"chunks of {CHUNK}")
-    return _ordered(worst)
-
-
-def run_one(seed: int, case: int) -> dict[str, Worst]:
-    """The same of a single case."""
-    scene, values = run_case(seed, case)
-    return _ordered({name: Worst(1, value, case, scene) for name, value in values})
-
-
-def _ordered(worst: dict[str, Worst]) -> dict[str, Worst]:
     return {name: worst[name] for name in BOUNDS if name in worst}
 
 

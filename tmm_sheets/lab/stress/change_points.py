@@ -192,8 +192,7 @@ class Passing:
         """The way that the group is on at a crank angle: the one that it follows, or that on its side."""
         g = self.m.groups[0]
         resting = any(abs(np.angle(np.exp(1j * (phi - a)))) <= at_rest(phi) for a in self.angles)
-        at = g.at if g.follow or resting else phi
-        return self.left if self.side(at, self.left) == g.side else self.right
+        return self.left if self.side(g.at if g.follow or resting else phi, self.left) == g.side else self.right
 
 
 def _decimal(rng: np.random.Generator, unit: int, low: int, high: int) -> float:

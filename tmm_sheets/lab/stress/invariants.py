@@ -157,8 +157,7 @@ class OneFunction(State):
 
     def by_steps(self, steps: Iterable[Step]) -> list[Any]:
         """Values that the steps themselves come to."""
-        known = list(steps)
-        return [self.full(value) for value in Replay(known, [self.phi])([self.phi])]
+        return [self.full(value) for value in Replay([*steps], [self.phi])([self.phi])]
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_layout import needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.structure import decompose
-from tmm_sheets.numbers import decimals_for, fixed, is_zero, number, size, written
+from tmm_sheets.numbers import Sizes, decimals_for, fixed, is_zero, number, written
 from tmm_sheets.sheets.components import graphs, listed
 from tmm_sheets.sheets.linkage import kinematic_frames, link_marks
 from tmm_sheets.sheets.player import once
@@ -72,7 +72,7 @@ def _points(project: Project) -> Rows:
     study, m, k = project.study, project.mechanism, project.force_index
     names = [name for name in study.positions.points if name not in m.fixed and name in study.velocities.points]
     speed, acceleration = study.velocities.points, study.accelerations.points
-    of_speed, of_acceleration = (size((step.value for step in of.values()), k) for of in (speed, acceleration))
+    of_speed, of_acceleration = (Sizes(step.value for step in of.values()).at(k) for of in (speed, acceleration))
     cells = [[link_marks.indexed(name), _size(speed[name], k, of_speed), _size(acceleration[name], k, of_acceleration)]
              for name in names]
     half = (len(cells) + 1) // 2
@@ -85,7 +85,7 @@ def _links(project: Project) -> Rows:
     study, m, k = project.study, project.mechanism, project.force_index
     loads, couples, _ = study.loads
     omega, epsilon, forces = study.velocities.omega, study.accelerations.epsilon, study.forces
-    of_omega, of_epsilon = (size((step.value for step in of.values()), k) for of in (omega, epsilon))
+    of_omega, of_epsilon = (Sizes(step.value for step in of.values()).at(k) for of in (omega, epsilon))
     of_epsilon = max(of_epsilon, of_omega**2)  # where no link speeds up, what is left is the rounding of normal accelerations
     rows = [[tr("Link"), tr("ω, s^{−1}"), "ε, " + tr("s^{−2}"), tr("F_i, N"), tr("M_i, N·m")]]
     for name, link in m.links.items():
