@@ -11,7 +11,7 @@ import pytest
 
 import tmm_sheets
 from tests import notebook
-from tests.project_files import FOUR_BAR
+from tests.project_files import EVEN, FOUR_BAR
 from tmm_sheets import catalogue, results, words
 from tmm_sheets.project import Project
 from tmm_sheets.task import variant
@@ -111,7 +111,7 @@ def test_columns_are_those_of_the_table(p, tmp_path):
 
     n = p.numbers()
     with (tmp_path / "n.csv").open("wb") as file:
-        write_csv(n._told, file)
+        write_csv(n.told, file)
     head, *rows = csv.reader((tmp_path / "n.csv").read_text("utf-8").splitlines())
     assert head == [*n.columns]
     for name, column in zip(head, zip(*rows, strict=True), strict=True):
@@ -146,6 +146,49 @@ def test_other_values_are_those_of_another_file(p):
     assert p.text == catalogue.read("lugansk/shaper").text
     assert p.with_().text == p.text
     assert q.project.variant.shipped
+
+
+@pytest.mark.parametrize(("project", "name", "unit", "spread"), [
+    ("lugansk/shaper", "crank.length", "mm", (76, 84)), ("lugansk/shaper", "crank.speed", "rpm", (60, 90)),
+    ("four-bar", "crank.length", "mm", (50, 900)), ("sixbar/1:1", "crank.length", "m", (0.01, 0.9))])
+def test_a_sweep_is_many_projects_with_other_values(project, name, unit, spread):
+    """Where one of them cannot be built it has no numbers at the angles at which it does not assemble."""
+    own = tmm_sheets.new(**FOUR_BAR, **EVEN) if project == "four-bar" else tmm_sheets.open(project)
+    found = own.sweep(name, f"{spread[0]}..{spread[1]} {unit}", 6)
+    n = len(own.project.cycle.labels)
+    assert {len(column) for column in found.values()} == {6 * n}
+    assert found.keys() == found.units.keys()
+    assert (found.units[name], found[name][0], found[name][-1]) == (unit, *spread)
+    whole = 0
+    for k in range(6):
+        here = slice(k * n, (k + 1) * n)
+        try:
+            other = own.with_({name: f"{found[name][k * n]} {unit}"})
+            told = other.numbers("positions", "velocities", "accelerations", phi=found["cycle.phi"][here]).columns
+        except tmm_sheets.CannotBuild:
+            assert any(np.isnan(column[here]).any() for column in found.values())
+            continue
+        whole += 1
+        for path in told.keys() & found.keys() - {"cycle.phi"}:
+            most = np.nanmax(np.abs(told[path]), initial=1e-3)
+            assert np.allclose(found[path][here], told[path], rtol=1e-9, atol=1e-9 * most,
+                               equal_nan=True), path
+    assert whole
+
+
+def test_a_sweep_of_one_and_of_none(p):
+    one = p.sweep("crank__length", "40..49 mm", 1, "velocities", phi_deg=30)
+    assert one["crank.length"].tolist() == [40.0]
+    assert one.units["velocities.points.D.y"] == "m/s"
+    assert not any(path.startswith("positions") for path in one)
+    for asked in (("crank.length", "40..49 mm", 0), ("crank.length", "49..40 mm"), ("points.C", "0..1 m"),
+                  ("crank.length", "40..49 mm", 5, "forces")):
+        with pytest.raises(tmm_sheets.BadInput):
+            p.sweep(*asked)
+    with pytest.raises(tmm_sheets.CannotBuild, match=re.escape("crank.lenght")):
+        p.sweep("crank.lenght", "40..49 mm")
+    with pytest.raises(tmm_sheets.CannotBuild, match="it is found"):  # by the synthesis
+        tmm_sheets.open("lugansk/engine").sweep("crank.length", "50..60 mm")
 
 
 def test_only_what_hangs_on_it_is_computed_again(p):

@@ -7,9 +7,9 @@ import pytest
 
 from tests.few import few
 from tests.project_files import CAM, CRANK, FLYWHEEL, FORCE, GEAR, MASS, REDUCER, SLIDER, WORKING, project, write
+from tmm_sheets import output
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput
-from tmm_sheets.output import building
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant
@@ -46,7 +46,7 @@ def test_every_command_on_it(name, tmp_path, capsys):
         captured = capsys.readouterr()
         assert (status, captured.err) == (0, ""), words
         assert captured.out
-    drawn = building.with_room(variant.read(file)).sheets  # kinematics and forces get a sheet each where one is too small
+    drawn = output.with_room(variant.read(file)).sheets  # kinematics and forces get a sheet each where one is too small
     assert drawn in (tuple(sheets), ("kinematics", "forces", *sheets[1:]))
     assert {p.name for p in out.glob("*.svg")} == {f"sheet{n}.svg" for n in range(1, len(drawn) + 1)}
     assert run(["solve", file, "--json", "-"]) == 0

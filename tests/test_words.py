@@ -309,9 +309,9 @@ def test_own_title_stands_in_every_language(tmp_path, monkeypatch):
 @pytest.mark.parametrize("workers", [1, 2])
 def test_an_order_takes_its_languages_along(workers, tmp_path):
     """In processes of their own, which know nothing of the options of the command."""
-    order = Order((), ("svg",), language="en", reader="uk")
+    order = Order((), ("svg",), language="en", reader="uk", output=tmp_path, jobs=workers)
     tasks = batch.tasks(("lugansk/cam_flat", "lugansk/cam_rocker", "no/such"))
-    done = {o.project: o for o in batch.carry_out(tasks, order, tmp_path, workers)}
+    done = {o.project: o for o in batch.carry_out(tasks, order)}
     assert (words.reader(), words.paper()) == ("en", "ru")
     assert "невідомий проєкт" in done["no/such"].problem
     assert 'xml:lang="en"' in (tmp_path / "lugansk-cam_flat" / "sheet1.svg").read_text("utf-8")

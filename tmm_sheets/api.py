@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 from tmm_sheets import catalogue, files, words
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
-from tmm_sheets.task import edited_text, title_entries
+from tmm_sheets.result_files import frame_of
+from tmm_sheets.task import edited_text, title_entries, units
 from tmm_sheets.task import variant as variants
+from tmm_sheets.toml_lines import dotted
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -56,7 +58,7 @@ def open(project: Path | str, *, corrected: bool = False, language: str = "", **
     BadInput
         with everything that is wrong in the file: line, key, what was expected.
     """
-    from tmm_sheets.output.building import with_room
+    from tmm_sheets.output import with_room
 
     return Opened(with_room(catalogue.read(str(project), corrected)), title_entries.given(title), language)
 
@@ -189,6 +191,56 @@ class Opened:
             raise BadInput(tell("phi: expected angles in a row: {why}").format(why=e)) from None
         refused: dict[str, CannotBuild] = {}
         return Numbers(results.told(self.project, parts or None, phi=angles, positions=positions, refused=refused), refused)
+
+    @_on_paper
+    def sweep(self, name: str, spread: str, count: int = 50, *parts: str, phi_deg: Any = None) -> Swept:
+        """Positions, velocities and accelerations for many values of one number of the file, by one function of all of them.
+
+        Parameters
+        ----------
+        name, spread
+            the number, ``crank.length``, and its range, ``40..49 mm``.
+        count
+            how many values, both ends among them; of one the lower end.
+        parts
+            some of the three, all unless told.
+        phi_deg
+            crank angles; those of the numbered positions unless told. They stay where they are: of other lengths the dead position,
+            from which positions are numbered, may be another one.
+
+        Raises
+        ------
+        BadInput
+            when the range cannot be read, or another part is asked for.
+        CannotBuild
+            when nothing of these parts follows from the number.
+        """
+        import numpy as np
+
+        from tmm_sheets import results
+        from tmm_sheets.optimising import optimum
+        from tmm_sheets.record.recording import unit
+
+        _check_count("count", count, 1)
+        if other := {*parts} - {*optimum.KINEMATIC}:
+            raise BadInput(tell("{part} does not follow from lengths alone").format(part=min(other)),
+                           tell("there are {names}").format(names=", ".join(optimum.KINEMATIC)))
+        key = dotted(edited_text.key_path(name))
+        own = edited_text.at(self.project.variant.data, key)
+        if isinstance(own, list | dict):
+            raise BadInput(tell("{name}: expected the name of one number").format(name=key))
+        varied = optimum.varied(f"{key}={spread}", self.project.variant.data)
+        values = [varied.at(share) for share in np.linspace(0.0, 1.0, count)]
+        angles = self.numbers("positions", phi_deg=phi_deg)["cycle.phi"]
+        made = Swept({key: np.repeat(values, len(angles)), "cycle.phi": np.tile(angles, count)})
+        made.units = {key: varied.unit, "cycle.phi": "rad"}
+        numbers = [units.si(own), *map(varied.si, values)]
+        several = results.swept(self.project, parts or optimum.KINEMATIC, key, numbers, tuple(angles))
+        for path, (step, column) in several.items():
+            ways = {f"{path}.x": column.real, f"{path}.y": column.imag} if np.iscomplexobj(column) else {path: column}
+            made |= ways
+            made.units |= dict.fromkeys(ways, unit(step, getattr(self.project.study, path.partition(".")[0]).plan))
+        return made
 
     @cached_property
     @_on_paper
@@ -411,6 +463,22 @@ def compared(project: Project, kind: Kind, path: Path, sheet: int | None = None,
     from tmm_sheets.compare.photo import image
 
     return image.compare(project, sheet, path, views, pencil, say, read_numbers)
+
+
+class Swept(dict[str, Any]):
+    """Columns by the paths of results: a row for each crank angle of each value, NaN where the mechanism does not assemble.
+
+    Attributes
+    ----------
+    units
+        of the columns, by the same names.
+    """
+
+    units: dict[str, str]
+
+    def frame(self) -> Any:
+        """The columns as a DataFrame of pandas; CannotBuild where that is not installed."""
+        return frame_of(self)
 
 
 class Findings(list[dict[str, Any]]):

@@ -9,7 +9,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tmm_sheets import files, quoting, resources, spelling
+from tmm_sheets import files, quoting, resources
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.task import families
 from tmm_sheets.words import either, every, tell
@@ -110,6 +110,8 @@ def located(project: str, guessed: bool = True) -> Path:
 
 def _meant(project: str, path: Path) -> str:
     """What may be meant by a name of which there is no project."""
+    from tmm_sheets import spelling
+
     beside: list[Path] = []
     with suppress(OSError):
         beside = sorted(path.parent.glob(f"*{SUFFIX}"))

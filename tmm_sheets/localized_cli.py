@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import gettext
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from functools import partial
+from functools import cached_property, partial
 from inspect import cleandoc
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
@@ -20,6 +20,7 @@ from tmm_sheets.words import LANGUAGES, marked, tell
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
+_Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 _LANG = marked("Language of sheets and messages.  [default: of sheets the project's, of messages the locale's]")
 
 
@@ -92,11 +93,7 @@ class Option(_Offered, click.Option):
 
 
 class Command(click.Command):
-    """A command with ``--lang``, whose help is looked up when it is shown."""
-
-    def __init__(self, *arguments: Any, **settings: Any) -> None:
-        super().__init__(*arguments, **settings)
-        self.params.append(Option(["--lang"], type=click.Choice(LANGUAGES), expose_value=False, help=_LANG))
+    """A command whose help is looked up when it is shown."""
 
     def get_help_option(self, ctx: click.Context) -> click.Option | None:
         """The option ``--help``: click keeps it as it was said first."""
@@ -123,15 +120,47 @@ class Command(click.Command):
             return super().get_short_help_str(limit)
 
 
+class Listed(Command):
+    """A command by its name and what it does; the function that carries it out, and tells its options, comes when asked for."""
+
+    def __init__(self, name: str, said: str, function: Callable[[], Callable[..., None]]) -> None:
+        super().__init__(name, help=said)
+        self.function = function
+        del self.params  # click's list is empty yet
+
+    @cached_property
+    def params(self) -> list[click.Parameter]:  # type: ignore[override]  # an attribute of click
+        """Arguments and options."""
+        return [*(make() for make in reversed(getattr(self.function(), "told", ()))), _lang()]
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Carry it out."""
+        return ctx.invoke(self.function(), **ctx.params)
+
+
 class Group(Command, click.Group):
     """Commands under one name."""
 
-    command_class = Command
+    def __init__(self, *arguments: Any, **settings: Any) -> None:
+        super().__init__(*arguments, **settings)
+        self.params.append(_lang())
 
 
-command = partial(click.command, cls=Command)
-"""Decorator: a command."""
-option = partial(click.option, cls=Option)
+def _lang() -> Option:
+    return Option(["--lang"], type=click.Choice(LANGUAGES), expose_value=False, help=_LANG)
+
+
+def _telling(kind: type[click.Parameter], *names: str, **settings: Any) -> _Decorator:
+    """As click's own decorators, but the parameter is only told: it is made when its command is asked for."""
+
+    def tell_it(function: Callable[..., Any]) -> Callable[..., Any]:
+        function.__dict__.setdefault("told", []).append(partial(kind, names, **settings))
+        return function
+
+    return tell_it
+
+
+option = partial(_telling, Option)
 """Decorator of commands: an option with help in the reader's language."""
-argument = partial(click.argument, cls=LocalizedArgument)
+argument = partial(_telling, LocalizedArgument)
 """Decorator of commands: an argument."""

@@ -57,6 +57,7 @@ def tables_of(path: Path) -> dict[str, Any]:
         raise BadInput(Problem(str(e), str(path))) from None
 
 
+@cache
 def meaning_of(markup: str, language: str, section: str = "") -> str:
     """What a letter means, by the tables ``letters-<section>`` and ``letters`` of words.toml.
 

@@ -204,7 +204,7 @@ class Numbers(dict[str, Any]):
 
     def __init__(self, told: Mapping[str, Any], refused: Mapping[str, CannotBuild]) -> None:
         super().__init__((path, _array(value)) for path, value in leaves(told))
-        self._told = dict(told)
+        self.told = dict(told)
         self.refused = dict(refused)
 
     def __missing__(self, path: str) -> Any:
@@ -225,14 +225,14 @@ class Numbers(dict[str, Any]):
     @property
     def tree(self) -> dict[str, Any]:
         """Nested lists and numbers, None where nothing is defined."""
-        return plain_numbers(self._told)  # type: ignore[no-any-return]
+        return plain_numbers(self.told)  # type: ignore[no-any-return]
 
     @property
     def columns(self) -> dict[str, Any]:
         """What is told of the positions as columns of as many rows: label, angle, and both projections of a point apart."""
-        if "cycle" not in self._told:
+        if "cycle" not in self.told:
             return {}
-        return {"label": list(self._told["cycle"]["labels"]), **columns(self._told)}
+        return {"label": list(self.told["cycle"]["labels"]), **columns(self.told)}
 
     def frame(self) -> Any:
         """The columns as a DataFrame of pandas, its rows called after the positions.
@@ -242,11 +242,22 @@ class Numbers(dict[str, Any]):
         CannotBuild
             where pandas is not installed.
         """
-        try:
-            from pandas import DataFrame
-        except ImportError:
-            raise CannotBuild(tell("pandas is not installed"), "pip install pandas") from None
-        return DataFrame(self.columns).set_index("label") if self.columns else DataFrame()
+        return frame_of(self.columns, "label")
+
+
+def frame_of(columns: Mapping[str, Any], index: str = "") -> Any:
+    """Columns as a DataFrame of pandas.
+
+    Raises
+    ------
+    CannotBuild
+        where pandas is not installed.
+    """
+    try:
+        from pandas import DataFrame
+    except ImportError:
+        raise CannotBuild(tell("pandas is not installed"), "pip install pandas") from None
+    return DataFrame(columns).set_index(index) if columns and index else DataFrame(columns)
 
 
 def _array(value: Any) -> Any:

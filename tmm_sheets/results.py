@@ -6,12 +6,12 @@ counter-clockwise.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.construction.step import Part, Plan, Reported, Step
+from tmm_sheets.construction.step import Part, Plan, Reported, Step, part_of, value_of
 from tmm_sheets.errors import BadInput, CannotBuild, together
 from tmm_sheets.numbers import Sizes, clean, in_a_row, listed
 from tmm_sheets.project import LINKAGE, Project
@@ -148,6 +148,32 @@ def _at_once(study: Study, tree: dict[str, Any], asked: list[str]) -> None:
     plans = [plan for name in asked for plan in _plans_of(study, name)]
     with suppress(CannotBuild):
         function.fill([*told, *(step for plan in plans for step in condition.steps(plan).values())], len(study.labels))
+
+
+def swept(project: Project, parts: Iterable[str], name: str, values: Sequence[float], phi: tuple[float, ...]) -> dict[
+        str, tuple[Step, Any]]:
+    """Results of the linkage for other values of a given number, all crank angles of one value after those of another.
+
+    One function gives them, which the project as it is proves: the first of the values is its own, and not among the results.
+
+    Raises
+    ------
+    CannotBuild
+        when nothing is made of a given of that name, or what the project has under it is found and not given.
+    """
+    import numpy as np
+
+    from tmm_sheets.construction.function import Function
+    from tmm_sheets.construction.program import rows_of
+
+    known = told(project, parts, phi=phi)
+    steps = {path: x for path, x in leaves({part: known[part] for part in parts}) if isinstance(x, Reported)}
+    rows = rows_of([x.step for x in steps.values()], len(phi))
+    function = Function({path: x.step for path, x in steps.items()}, rows, [name])
+    own, *several = [function(*map(value_of, rows), given={name: value}) for value in values]
+    if not all(np.allclose(own[path], x.step.value, rtol=1e-9, equal_nan=True) for path, x in steps.items()):
+        raise CannotBuild(tell("{name}: the file does not give this number, it is found").format(name=name))
+    return {path: (x.step, part_of(np.concatenate([found[path] for found in several]), x.part)) for path, x in steps.items()}
 
 
 def _plans_of(study: Study, part: str) -> list[Plan]:

@@ -32,9 +32,9 @@ def text(variant: Variant, names: Names) -> str:
     if not (paper := names.paper(variant)).usual:
         lines.append(tell("paper: {format}, {orientation}").format(format=paper.format, orientation=paper.orientation))
     entered = [(name, of_file(told.text, tell), told.where if told.text else "") for name, told in names.entries(variant).items()]
-    order = (tell("an option of build, note and plot goes first, then {beside}, {user}, {file}") if variant.shipped else
-             tell("an option of build, note and plot goes first, then {file}, {beside}, {user}"))
-    lines += ["", tell("Title block"), *_table(entered), "  " + order.format(
+    goes_first = (tell("an option of build, note and plot goes first, then {beside}, {user}, {file}") if variant.shipped else
+                  tell("an option of build, note and plot goes first, then {file}, {beside}, {user}"))
+    lines += ["", tell("Title block"), *_table(entered), "  " + goes_first.format(
         file=variant.called, beside=title_entries.beside_of(variant), user=title_entries.user_file() or "–")]
     lines += ["", tell("Inputs"), *_table(list(_inputs(variant)))]
     if variant.synthesis is not None:

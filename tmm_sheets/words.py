@@ -17,7 +17,6 @@ from contextvars import ContextVar
 from decimal import Decimal
 from functools import cache, lru_cache
 from pathlib import Path
-from string import Formatter
 from typing import Any, TypeVar
 
 from tmm_sheets.resources import template
@@ -37,9 +36,6 @@ LANGUAGES = languages(template("locale"))
 SHEETS, MESSAGES = "ru", CODE
 """Language of sheets when neither project nor command tells one, and of messages when the locale names none of them."""
 DOMAIN = "tmm_sheets"
-
-_FRACTIONS = (float, Decimal)
-"""Numbers that may have a decimal sign."""
 
 _paper = ContextVar("paper", default=SHEETS)
 _reader = ContextVar("reader", default=MESSAGES)
@@ -122,21 +118,25 @@ class CatalogueText(str):
 
     def format(self, *args: object, **fields: object) -> str:
         """The text with its fields filled in."""
-        if decimal_sign(self.language) == "." or not any(isinstance(value, _FRACTIONS) for value in (*args, *fields.values())):
+        sign = decimal_sign(self.language)
+        if sign == ".":
             return super().format(*args, **fields)
-        return _Written(self.language).vformat(self, args, fields)
+        signed = {key: _signed(value, sign) for key, value in fields.items()}
+        return super().format(*(_signed(value, sign) for value in args), **signed)
 
 
-class _Written(Formatter):
-    """Fills in fractions with the decimal sign of a language."""
+class _Signed:
+    """A number that is written with the decimal sign of a language."""
 
-    def __init__(self, language: str) -> None:
-        self.sign = decimal_sign(language)
+    def __init__(self, number: float | Decimal, sign: str) -> None:
+        self.number, self.sign = number, sign
 
-    def format_field(self, value: object, format_spec: str) -> str:
-        """One field."""
-        text = str(super().format_field(value, format_spec))
-        return text.replace(".", self.sign) if isinstance(value, _FRACTIONS) else text
+    def __format__(self, spec: str) -> str:
+        return format(self.number, spec).replace(".", self.sign)
+
+
+def _signed(value: object, sign: str) -> object:
+    return _Signed(value, sign) if isinstance(value, float | Decimal) else value
 
 
 def _text(text: str, language: str) -> CatalogueText:

@@ -13,6 +13,7 @@ from tests.note.opened import composed, opened
 from tmm_sheets import results, words
 from tmm_sheets.construction.formula import Letters, Words
 from tmm_sheets.drawing.styles import line_types
+from tmm_sheets.meanings import tables_of
 from tmm_sheets.note import composing, phrases
 from tmm_sheets.note.document import (
     Contents,
@@ -30,8 +31,9 @@ from tmm_sheets.note.document import (
 )
 from tmm_sheets.note.pictures import LETTERS, READABLE, Pictures
 from tmm_sheets.note.reader import Reader
-from tmm_sheets.note.sections import flywheel, forces, reducer
+from tmm_sheets.note.sections import forces, wheels
 from tmm_sheets.record.recording import book_of
+from tmm_sheets.resources import template
 from tmm_sheets.sheets.views import VIEWS
 
 
@@ -261,7 +263,9 @@ def test_what_is_said_follows_the_record(reader, section, fields, said, unsaid):
     """A sentence about a result stands only where the record bears it out; here the record says the contrary of the shaper's."""
     from importlib import import_module
 
-    found = import_module(f"tmm_sheets.note.sections.{section}").fields(reader)
+    order = tables_of(template("note/order.toml"))["section"]
+    module = next((of["module"] for of in order if of["template"] == section), "task")
+    found = getattr(import_module(f"tmm_sheets.note.sections.{module}"), f"{section}_fields")(reader)
     assert fields.keys() <= found.keys()
     assert all(bool(found[k]) != bool(v) for k, v in fields.items())
     text = told(section, reader, found | fields)
@@ -384,7 +388,7 @@ def test_interference_does_not_contradict_the_conditions():
     s = np.sin(np.radians(20)) ** 2
     assert 15 * s / 2 < 1 < 15**2 * s / 4
     r = undrawn("transport/diesel@01-Т-27")
-    text = told("reducer", r, reducer.fields(r))
+    text = told("reducer", r, wheels.reducer_fields(r))
     assert "Условия соосности, сборки и соседства выполнены" in text
     assert "при 15 зубьях сателлита её не устраняет никакое число зубьев колеса 5" in text
     assert "Все условия" not in text
@@ -393,4 +397,4 @@ def test_interference_does_not_contradict_the_conditions():
 @pytest.mark.parametrize("name", ["conveyor", "feeder", "stirrer"])
 def test_a_crank_with_a_moment_of_inertia_counts_once(name):
     r = undrawn(str(Path(__file__).parents[1] / "projects" / f"{name}.toml"))
-    assert flywheel.fields(r)["J"].numbers is not None
+    assert wheels.flywheel_fields(r)["J"].numbers is not None

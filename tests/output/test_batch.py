@@ -380,13 +380,13 @@ def test_wrong_usage(arguments, said, capsys):
 def test_a_killed_worker_costs_its_project_only_this_time(tmp_path, monkeypatch):
     """The kernel may kill a process for want of memory: told as failures, not waited for."""
 
-    def one(task, order, parent):
+    def one(task, order):
         if task.project == "deadly":
             os.kill(os.getpid(), signal.SIGKILL)
         return Outcome(task.project)
 
     monkeypatch.setattr(batch, "one", one)
-    found = {o.project: o.problem for o in batch.carry_out(batch.tasks(("a", "deadly", "b")), Order(), tmp_path, 2)}
+    found = {o.project: o.problem for o in batch.carry_out(batch.tasks(("a", "deadly", "b")), Order(output=tmp_path, jobs=2))}
     assert set(found) == {"a", "b", "deadly"}
     assert "killed" in found["deadly"]
 

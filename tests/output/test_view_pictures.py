@@ -41,7 +41,7 @@ def test_a_watch_outlives_any_error(error, tmp_path, monkeypatch, capsys):
     """What one state of the file shows is told, and the next one is drawn."""
     built, states = [], iter([error, None])
 
-    def build(project, order, output):
+    def build(project, order):
         if (wrong := next(states)) is not None:
             raise wrong
         built.append(project)

@@ -10,7 +10,7 @@ from tmm_sheets import api
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing import ink_index
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.output.building import with_room
+from tmm_sheets.output import with_room
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import composition
 from tmm_sheets.sheets.composition import arranged

@@ -9,9 +9,8 @@ import pytest
 
 from tests import project_files as files
 from tests.few import seldom
-from tmm_sheets import catalogue
+from tmm_sheets import catalogue, output
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.output import building
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import composition, sheet
 from tmm_sheets.sheets.linkage.kinematic_frames import own_factors
@@ -70,9 +69,9 @@ def test_two_sheets_are_taken_where_one_is_too_small():
     alone = files.project(files.from_file(PLANER), {"project.sheets": ["kinematics_forces_wide"]})
     (said,) = composition.crowded(alone, [1])
     assert 'sheets = ["kinematics", "forces"]' in str(said)
-    assert building.with_room(planer).sheets == ("kinematics", "forces", "flywheel")
-    assert not list(composition.crowded(Project(building.with_room(planer)), [1]))
-    assert building.with_room(alone.variant) is alone.variant, "who names one has it"
+    assert output.with_room(planer).sheets == ("kinematics", "forces", "flywheel")
+    assert not list(composition.crowded(Project(output.with_room(planer)), [1]))
+    assert output.with_room(alone.variant) is alone.variant, "who names one has it"
 
 
 def every_sheet(project):

@@ -40,7 +40,7 @@ from tmm_sheets.backends.dxf_frame import (
 from tmm_sheets.backends.dxf_frame import weight as weight
 from tmm_sheets.drawing.ink import check, interrupted, strokes
 from tmm_sheets.drawing.lettering import BAR, PEN, advance, glyph, lacking, letter
-from tmm_sheets.drawing.marks import Dimension, Drawing, Form, FormField, Mark, Text, View
+from tmm_sheets.drawing.marks import Dimension, Drawing, Form, FormField, Mark, Text
 from tmm_sheets.drawing.styles import layer, line_type, line_types
 from tmm_sheets.resources import template
 
@@ -340,7 +340,12 @@ def render(drawing: Drawing, text: Lettering = "live") -> bytes:
     if "nan" in tags or "inf" in tags:
         for mark in drawing.marks:
             check(mark)
-    parts.views += (_named_view(view, around, handles) for view in drawing.views)
+    parts.views += (
+        f"0\nVIEW\n5\n{next(handles):X}\n330\n{around.views}\n100\nAcDbSymbolTableRecord\n100\nAcDbViewTableRecord\n"
+        f"2\n{clean(view.name)}\n70\n0\n40\n{short(view.box.height)}\n41\n{short(view.box.width)}\n"
+        f"10\n{short(view.box.centre.real)}\n20\n{short(view.box.centre.imag)}\n"
+        "11\n0\n21\n0\n31\n1\n12\n0\n22\n0\n32\n0\n42\n50\n43\n0\n44\n0\n50\n0\n71\n0\n281\n0\n72\n0\n"
+        for view in drawing.views)
     return around.filled(parts, drawing.title, drawing.author, style, extents(drawing.marks), handles).encode("utf-8")
 
 
@@ -363,15 +368,6 @@ def _stroked(marks: Iterable[Mark], around: DxfFrame, handles: Iterator[int]) ->
             parts.entities.append(entity(mark, next(handles), around.owner, on, solid=solid))
     parts.entities.append(letter_strokes(texts, around.owner, "TEXT", handles))
     return parts
-
-
-def _named_view(view: View, around: DxfFrame, handles: Iterator[int]) -> str:
-    """Entry of the table of named views."""
-    box = view.box
-    return (f"0\nVIEW\n5\n{next(handles):X}\n330\n{around.views}\n100\nAcDbSymbolTableRecord\n100\nAcDbViewTableRecord\n"
-            f"2\n{clean(view.name)}\n70\n0\n40\n{short(box.height)}\n41\n{short(box.width)}\n10\n{short(box.centre.real)}\n20\n"
-            f"{short(box.centre.imag)}\n"
-            "11\n0\n21\n0\n31\n1\n12\n0\n22\n0\n32\n0\n42\n50\n43\n0\n44\n0\n50\n0\n71\n0\n281\n0\n72\n0\n")
 
 
 def plot_styles() -> bytes:

@@ -18,7 +18,7 @@ import numpy as np
 
 from tmm_sheets.drawing.lettering import PEN, glyph, widened
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Text
-from tmm_sheets.drawing.styles import LayerStyle, layers, line_type, roles
+from tmm_sheets.drawing.styles import layers, line_type, roles
 
 COMMON, OWN = "lc_opengost-br", "tmm_sheets_b"
 """Names of the text style. LibreCAD takes it for that of a font, where others look at the font file: the first it brings along,
@@ -69,7 +69,9 @@ class DxfFrame(NamedTuple):
         box = (f"  9\n$EXTMIN\n 10\n{x0:.4f}\n 20\n{y0:.4f}\n 30\n0.0\n"
                f"  9\n$EXTMAX\n 10\n{x1:.4f}\n 20\n{y1:.4f}\n 30\n0.0\n")
         always = {role.upper() for role in roles()}
-        used = [self._layer(on, f"{next(handles):X}") for on in layers().values() if on.name in parts.layers or on.name in always]
+        used = [self.layer.format(handle=f"{next(handles):X}", name=on.name, description=on.description, colour=look.colour,
+                                  linetype=look.linetype, weight=weight(look.width))
+                for on in layers().values() if on.name in parts.layers or on.name in always for look in (line_type(on.style),)]
         told = {TITLE: " ".join(title.splitlines()), AUTHOR: " ".join(author.splitlines()), STYLE: style,
                 HANDSEED: f"{next(handles):X}", EXTENTS: box, LAYERS: "".join(used), VIEWS: "".join(parts.views),
                 RECORDS: "".join(parts.records),
@@ -77,11 +79,6 @@ class DxfFrame(NamedTuple):
                 GROUPS: "".join(parts.groups)}  # fmt: skip
         pieces = re.split(f"({'|'.join(map(re.escape, told))})", self.text)
         return "".join(told.get(piece, piece) for piece in pieces)
-
-    def _layer(self, layer: LayerStyle, handle: str) -> str:
-        look = line_type(layer.style)
-        return self.layer.format(handle=handle, name=layer.name, description=layer.description, colour=look.colour,
-                                 linetype=look.linetype, weight=weight(look.width))
 
 
 WEIGHTS = (0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200, 211)

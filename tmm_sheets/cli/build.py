@@ -1,8 +1,9 @@
-"""``build``, ``watch``, ``roster``: the sheets of one project or of many, once or each time their file is saved."""
+"""``build``, ``watch``, ``roster``, ``note``, ``page``, ``serve``, ``optimise``: what is made of one project or of many."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,18 +18,22 @@ from tmm_sheets.cli.options import (
     PROJECT,
     REMAKE,
     SHEETS,
+    among,
     folder_of,
     formats_of,
     on_paper,
+    open_project,
     plotter,
     put,
     read_variant,
     refuse,
+    tell_all,
     title_names,
     titled,
 )
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
-from tmm_sheets.localized_cli import argument, command, option
+from tmm_sheets.files import MOST_POSITIONS
+from tmm_sheets.localized_cli import argument, option
 from tmm_sheets.progress import Bar, Progress
 from tmm_sheets.words import marked, tell
 
@@ -39,7 +44,8 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 
-@command("build")
+# --- sheets, once or each time their file is saved ---------------------------------------------------------------------------
+
 @argument("projects", metavar="PROJECT...", nargs=-1)
 @option("--all", "families", multiple=True, metavar="FAMILY",
               help="All shipped projects of a family, such as sixbar, or of all.")
@@ -69,40 +75,34 @@ if TYPE_CHECKING:
 @option("--open", "show_files", is_flag=True, help="Open what was made: one file, or its folder.")
 @option("--explain", is_flag=True, help="Also tell what was built and evaluated, and how long it took.")  # fmt: skip
 def run_build(
-    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], corrected: bool, sheets: tuple[int, ...],
-    formats: tuple[str, ...], dpi: float, machine: Plotter | None, text: str, one_file: bool, output: Path | None,
-    archive: bool, force: bool, jobs: int | None, scheduler: str | None, with_note: bool, views: bool,
-    show_files: bool, explain: bool,
+    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], dpi: float, machine: Plotter | None, text: str,
+    **asked: Any,
 ) -> None:
-    """Draw the sheets of one PROJECT or of several; what has not changed since the last time is not made again."""
-    single = len(projects) == 1 and not families and not lists
-    refuse(
-        (not (projects or families or lists), marked("Missing argument 'PROJECT'; or give --all FAMILY, or --list FILE.")),
-        (one_file and "pdf" not in formats, marked("--one-file is for PDF: add pdf to --format")),
-        (single and (jobs is not None or scheduler is not None), marked("--jobs and --dask are for several projects")),
-        (single and with_note and archive, marked("--with-note writes into a folder: leave --zip out")),
-        (single and views and archive, marked("--views writes into a folder: leave --zip out")),
-        (not single and (views or show_files), marked("--views and --open are for one project")),
-        (not single and with_note, marked("--with-note is for one project")),
-        (not single and explain, marked("--explain is for one project")),
-    )
     from tmm_sheets.output.build_store import place
     from tmm_sheets.output.building import Order
 
-    output = None if output is None else place(output)
     settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": machine}, "dxf": {"text": text},
                                            "pdf": {"date": files.source_date()}}  # fmt: skip
-    order = Order(sheets, formats, settings, corrected, force, archive, one_file, names=title_names())
+    order = Order(**asked, settings=settings, names=title_names())
+    single = len(projects) == 1 and not families and not lists
+    refuse(
+        (not (projects or families or lists), marked("Missing argument 'PROJECT'; or give --all FAMILY, or --list FILE.")),
+        (order.one_file and "pdf" not in order.formats, marked("--one-file is for PDF: add pdf to --format")),
+        (single and (order.jobs is not None or order.scheduler is not None), marked("--jobs and --dask are for several projects")),
+        (single and order.with_note and order.archive, marked("--with-note writes into a folder: leave --zip out")),
+        (single and order.views and order.archive, marked("--views writes into a folder: leave --zip out")),
+        (not single and (order.views or order.show_files), marked("--views and --open are for one project")),
+        (not single and order.with_note, marked("--with-note is for one project")),
+        (not single and order.explain, marked("--explain is for one project")),
+    )
+    order = order if order.output is None else replace(order, output=place(order.output))
     if single:
-        build_one(projects[0], order, output, explain, with_note, views, show_files)
+        build_one(projects[0], order)
     else:
-        _build_many(projects, families, lists, order, output or Path("out"), jobs, scheduler)
+        _build_many(projects, families, lists, order)
 
 
-def _build_many(
-    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], order: Order, parent: Path,
-    jobs: int | None, scheduler: str | None,
-) -> None:
+def _build_many(projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], order: Order) -> None:
     from time import monotonic
 
     from tmm_sheets.output import batch, build_store
@@ -110,13 +110,13 @@ def _build_many(
     names = batch.chosen(projects, families, [_listed(file) for file in lists])
     if not names:
         raise BadInput(tell("no projects to build"), hint=tell("the list is empty"))
-    build_store.check(parent)
+    build_store.check(order.parent)
     start = monotonic()
-    done, ended = come_of(batch.on(batch.tasks(names), order, parent, jobs, scheduler), len(names))
+    done, ended = come_of(batch.on(batch.tasks(names), order), len(names))
     for outcome in sorted(done, key=lambda o: o.project):
         for warning in outcome.warnings:
             click.echo(f"{outcome.project}: {warning}", err=True)
-    click.echo(batch.summary(done, parent, monotonic() - start))
+    click.echo(batch.summary(done, order.parent, monotonic() - start))
     failures = [outcome for outcome in done if outcome.problem]
     ended(batch.table(failures, len(names)) if failures else "")
 
@@ -136,8 +136,7 @@ def _listed(file: str) -> list[str]:
         raise BadInput(Problem(str(e), file, e.line, hint=hint)) from None
 
 
-def build_one(project: str, order: Order, output: Path | None, explain: bool = False, with_note: bool = False,
-               views: bool = False, show_files: bool = False) -> None:
+def build_one(project: str, order: Order) -> None:
     """Build the sheets of one project and what goes with them, and tell the files and what is to be said of them."""
     from contextlib import nullcontext
 
@@ -147,14 +146,14 @@ def build_one(project: str, order: Order, output: Path | None, explain: bool = F
     watch = Stopwatch()
     with watch.phase(tell("read")):
         variant = read_variant(project, order.corrected)
-    folder = folder_of(variant, output)
+    folder = folder_of(variant, order.output)
     outlet = order.outlet(folder)
-    if explain:
+    if order.explain:
         from tmm_sheets.explain import listening
     paths, warnings = tuple[Path, ...](), tuple[str, ...]()
     try:
-        with Progress() as progress, listening() if explain else nullcontext() as askers:
-            if with_note:
+        with Progress() as progress, listening() if order.explain else nullcontext() as askers:
+            if order.with_note:
                 from tmm_sheets.note import note as writing
 
                 words.set_paper(words.of_project(variant.project.language))
@@ -162,29 +161,27 @@ def build_one(project: str, order: Order, output: Path | None, explain: bool = F
                     variant = writing.run_on(variant, progress.doing)
             built = build_project(variant, order, outlet, watch, progress.doing)
             paths, warnings = built.paths, built.warnings
-            if with_note:
+            if order.with_note:
                 with watch.phase(tell("note")):
                     written = writing.write(built.opened, ("pdf",), progress.doing)
                     noted, kept = put(folder, written.files, order.force)
                 paths += noted
                 warnings += (*kept, *(tell("left out: {problem}").format(problem=problem) for problem in written.problems))
-            if views:
+            if order.views:
                 pictured, kept = put(folder / "views", _pictures(built.opened, order), order.force)
                 paths += pictured
                 warnings += tuple(kept)
     finally:  # what is there is told, whatever became of the rest
         for path in paths:
             click.echo(path)
-    if show_files and paths:
+    if order.show_files and paths:
         shown = paths[0] if len(paths) == 1 else paths[0].parent
         if click.launch(str(shown)):
             warnings += (tell("{path} cannot be opened here: open it yourself").format(path=shown),)
-    for warning in warnings:
-        click.echo(f"{variant.called}: {warning}", err=True)
     unchanged = len(built.paths) - len(built.sizes)
     if unchanged:
-        told = tell("{n} of {m} files unchanged (--force makes them again)").format(n=unchanged, m=len(built.paths))
-        click.echo(f"{variant.called}: {told}", err=True)
+        warnings += (tell("{n} of {m} files unchanged (--force makes them again)").format(n=unchanged, m=len(built.paths)),)
+    tell_all(variant, warnings)
     if askers is not None:
         from tmm_sheets import explain as report
 
@@ -204,15 +201,13 @@ def _pictures(opened: Project, order: Order) -> dict[str, bytes]:
     return {name: data for n, composed in drawn.items() for name, data in view_pictures.of_sheet(n, composed, formats, dpi)}
 
 
-@command("watch")
 @PROJECT
 @CORRECTED
 @titled
 @SHEETS
 @formats_of("pdf")
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Folder of the sheets.  [default: out/<project>]")
-def run_watch(project: str, corrected: bool, sheets: tuple[int, ...], formats: tuple[str, ...], output: Path | None) -> None:
-    """Draw the sheets of a project file each time it is saved, until Ctrl-C."""
+def run_watch(project: str, **asked: Any) -> None:
     from tmm_sheets.output.building import Order
     from tmm_sheets.task import title_entries
 
@@ -223,7 +218,7 @@ def run_watch(project: str, corrected: bool, sheets: tuple[int, ...], formats: t
     click.echo(tell("watching {file}, Ctrl-C ends it").format(file=path), err=True)
 
     def draw(file: str | Path) -> None:
-        build_one(str(file), Order(sheets, formats, {}, corrected, names=title_names()), output)
+        build_one(str(file), Order(**asked, names=title_names()))
 
     for _ in files.saved((path, path.parent / title_entries.FILE)):
         try:
@@ -236,7 +231,6 @@ def run_watch(project: str, corrected: bool, sheets: tuple[int, ...], formats: t
             click.echo(defects.told(e, ("watch", project), path, draw), err=True)
 
 
-@command("roster")
 @argument("table", metavar="FILE", type=click.Path(path_type=Path))
 @option("--task", default="", metavar="PROJECT", help="Task of those for whom the table names none, or a machine for its ciphers.")
 @CORRECTED
@@ -248,23 +242,20 @@ def run_watch(project: str, corrected: bool, sheets: tuple[int, ...], formats: t
 @JOBS
 @DASK
 @NO_CACHE
-def run_roster(table: Path, task: str, corrected: bool, formats: tuple[str, ...], output: Path, force: bool, jobs: int | None,
-               scheduler: str | None) -> None:
-    """Make the work of a whole group: for each student of a CSV FILE sheets, note, living page, a table to fill in."""
+def run_roster(table: Path, task: str, output: Path, **asked: Any) -> None:
     from tmm_sheets.output import batch, build_store
     from tmm_sheets.output import roster as rosters
-    from tmm_sheets.output.build_store import place
     from tmm_sheets.output.building import Order
 
     students = rosters.read(table, task)
-    output = place(output)
+    output = build_store.place(output)
     build_store.check(output)
     settings: dict[str, dict[str, Any]] = {"pdf": {"date": files.source_date()}}
-    order = Order((), formats, settings, corrected, force, names=title_names())
+    order = Order(**asked, output=output, settings=settings, names=title_names())
     works = [batch.Task(s.project, s.folder, s.student, s.group) for s in students]
-    came, ended = come_of(batch.on(works, order, output, jobs, scheduler), len(works))
+    came, ended = come_of(batch.on(works, order), len(works))
     done = {outcome.folder: outcome for outcome in came}
-    written, hand = put(output, rosters.lists(students, done, output), force)
+    written, hand = put(output, rosters.lists(students, done, output), order.force)
     for s in students:
         if s.renamed:
             click.echo(s.renamed, err=True)
@@ -300,3 +291,114 @@ def come_of(running: Iterable[Outcome], total: int) -> tuple[list[Outcome], Call
             raise e
 
     return done, ended
+
+
+
+# --- what is made of a project besides its sheets ----------------------------------------------------------------------------
+
+NOTE_FORMATS = ("pdf", "docx")
+"""Formats of the explanatory note."""
+
+
+@PROJECT
+@CORRECTED
+@titled
+@option("--format", "formats", default="pdf", show_default=True, callback=among(NOTE_FORMATS), metavar="F,F",
+        help=f"Formats: {', '.join(NOTE_FORMATS)}.")
+@option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Folder of the note.  [default: out/<project>]")
+@option("--force", is_flag=True, help="Overwrite what was changed by hand.")
+@NO_CACHE
+def run_note(project: str, corrected: bool, formats: tuple[str, ...], output: Path | None, force: bool) -> None:
+    from tmm_sheets.note import note as writing
+
+    writing.check(formats)
+    opened = open_project(project, corrected)
+    folder = folder_of(opened.variant, output)
+    files.check_folder(folder)
+    with Progress() as progress:
+        written = writing.write(opened, formats, progress.doing)
+        paths, kept = put(folder, written.files, force)
+    for path in paths:
+        click.echo(path)
+    tell_all(opened.variant, [*kept, *(tell("left out: {problem}").format(problem=problem) for problem in written.problems),
+                              *(opened.dead_positions if opened.variant.crank is not None else ())])
+
+
+@PROJECT
+@CORRECTED
+@SHEETS
+@option("--plan", "plan", default="", metavar="NAME", help="Open with this plan.")
+@option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE",
+        help="File of the page.  [default: out/<project>/page.html]")
+@NO_CACHE
+def run_page(project: str, corrected: bool, sheets: tuple[int, ...], plan: str, output: Path | None) -> None:
+    from tmm_sheets.living.page import page as living_page
+    opened = open_project(project, corrected)
+    found, problem = living_page(opened, opened.variant.chosen(sheets), plan)
+    path = output if output is not None else folder_of(opened.variant, None) / "page.html"
+    files.write_all({path: found.encode()})
+    click.echo(path)
+    if problem is not None:
+        raise problem
+
+
+@argument("project", required=False)
+@CORRECTED
+@option("--watch", "followed", type=click.Path(path_type=Path), metavar="FILE",
+        help="Show this project file, anew each time it is saved.")
+@option("--host", default="127.0.0.1", show_default=True, help="Address to listen at: another one lets other machines in.")
+@option("--port", type=click.IntRange(1, 65535), metavar="N", help="Port to listen at.  [default: 8731, or a free one]")
+@option("--no-browser", is_flag=True, help="Tell the address only.")
+@NO_CACHE
+def run_serve(project: str | None, corrected: bool, followed: Path | None, host: str, port: int | None, no_browser: bool) -> None:
+    from tmm_sheets.page import serving
+
+    serving.check_packages()
+    refuse((project is not None and followed is not None, marked("give either PROJECT or --watch FILE, not both")))
+    from tmm_sheets.page import doors
+
+    opens = (doors.followed_file(followed) if followed is not None else
+             doors.shown_project(project, corrected) if project is not None else doors.Shown())
+
+    def tell_address(address: str) -> None:
+        click.echo(address)
+        click.echo(tell("Ctrl-C ends it"), err=True)
+        if not no_browser and click.launch(address):
+            click.echo(tell("no browser can be opened here: open the address yourself"), err=True)
+
+    serving.serve(opens, host, port, tell_address)
+
+
+@PROJECT
+@CORRECTED
+@option("--vary", multiple=True, metavar="NAME=A..B",
+        help="A number of the project file and its range, such as crank.length=70..90 mm; may be repeated.")
+@option("--least", default="", metavar="WISH", help="What is to be least, such as max |cam.pressure_angle|.")
+@option("--most", default="", metavar="WISH", help="What is to be greatest.")
+@option("--subject-to", "bounds", multiple=True, metavar="BOUND",
+        help="What has to hold, such as gear.eps_alpha >= 1.2; may be repeated.")
+@option("--positions", type=click.IntRange(2, MOST_POSITIONS), default=120, show_default=True, metavar="N",
+        help="Crank angles of a turn at which results are looked at.")
+@option("--tries", type=click.IntRange(1), default=400, show_default=True, metavar="N", help="How many numbers are tried at most.")
+@option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE",
+        help="The project file with the best numbers; the search as a picture beside it.  [default: out/<project>/optimised.toml]")
+@option("--force", is_flag=True, help="Overwrite a file that says something else.")
+def run_optimise(project: str, corrected: bool, vary: tuple[str, ...], least: str, most: str, bounds: tuple[str, ...],
+                 positions: int, tries: int, output: Path | None, force: bool) -> None:
+    from tmm_sheets.api import Opened
+
+    opened = Opened(read_variant(project, corrected, drawn=False))
+    path = output if output is not None else folder_of(opened.project.variant, None) / "optimised.toml"
+    if path.suffix != ".toml":
+        raise click.UsageError(tell("-o {file}: expected a name that ends in .toml").format(file=path))
+    if output is not None:
+        files.refuse_present(path, force)
+    files.check_folder(path.parent)
+    with Progress() as progress:
+        found = opened.optimise(vary, least, most=most, subject_to=bounds, positions=positions, tries=tries,
+                                say=lambda n: progress.say(tell("try {n} of {most} ...").format(n=n, most=tries)))
+    click.echo(found)
+    made = {path: found.opened.text.encode(), path.with_suffix(".svg"): found.svg.encode()}
+    files.write_all(made)
+    for at in made:
+        click.echo(at)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from tmm_sheets import files, kept, spelling, words
+from tmm_sheets import files, kept, words
 from tmm_sheets.localized_cli import argument, option
 from tmm_sheets.words import tell
 
@@ -35,6 +35,8 @@ def among(known: tuple[str, ...]) -> Callable[[click.Context, click.Parameter, s
         parts = tuple(dict.fromkeys(part.strip().lower() for part in value.split(",")))
         for part in parts:
             if part not in known:
+                from tmm_sheets import spelling
+
                 said = tell("'{part}' is not one of {known}").format(part=part, known=', '.join(known))
                 raise click.BadParameter("; ".join(filter(None, (said, spelling.hint(part, known)))))
         return parts
@@ -122,11 +124,10 @@ CORRECTED = option("--corrected", is_flag=True, help="With the suggested values 
 def read_variant(project: str, corrected: bool, drawn: bool = True) -> Variant:
     """The project's numbers, and names in its title blocks; what is doubtful in them goes to standard error."""
     from tmm_sheets import catalogue
-    from tmm_sheets.output.building import with_room
+    from tmm_sheets.output import with_room
 
     variant = with_room(catalogue.read(project, corrected))
-    for warning in variant.warnings:
-        click.echo(f"{variant.called}: {warning}", err=True)
+    tell_all(variant, variant.warnings)
     return title_names().filled(variant) if drawn else variant
 
 
@@ -144,6 +145,12 @@ def title_names() -> Names:
     from tmm_sheets.task import title_entries
 
     return title_entries.given(click.get_current_context().meta.get(TITLE, {}))
+
+
+def tell_all(variant: Variant, said: Iterable[object]) -> None:
+    """Tell what is to be said of a project on standard error, a line each."""
+    for line in said:
+        click.echo(f"{variant.called}: {line}", err=True)
 
 
 def folder_of(variant: Variant, output: Path | None) -> Path:

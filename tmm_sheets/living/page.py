@@ -27,6 +27,7 @@ from tmm_sheets.record import recording
 from tmm_sheets.record.recording import called
 from tmm_sheets.resources import template
 from tmm_sheets.task import edited_text, units
+from tmm_sheets.task.schema import Table
 from tmm_sheets.toml_lines import KeyPath, nodes, scan
 from tmm_sheets.words import tell, tr
 
@@ -52,10 +53,10 @@ def page(project: Project, numbers: Iterable[int] = (), plan: str = "") -> tuple
         when nothing of the project can be computed, or none of these sheets drawn.
     """
     moving = _moves(project)
-    record, problem = recording.record(project, numbers)
+    record, problem, book = recording.recorded(project, numbers)
     if problem is not None and not record["sheets"]:
         raise problem
-    made = motion(project, recording.book_of(project)) if moving else None
+    made = motion(project, book) if moving else None
     if made is not None:
         places = scan(project.variant.text).places
         record["motion"] = made.told | {"givens": [g | slider(project.variant, places, g["name"]) for g in made.told["givens"]]}
@@ -153,11 +154,14 @@ def slider(variant: Variant, places: Mapping[KeyPath, tuple[int, int]], name: st
         return told
     own = units.si(number)
 
+    # Only the table of the number is read anew: the others are as they were read.
+    kept = {key: read for key, read in variant if key != path[0] and key in variant.data and isinstance(read, Table | tuple)}
+
     def taken(x: float) -> bool:
         """Whether the schema takes a number."""
-        data = deepcopy(variant.data)
+        data = variant.data | {path[0]: deepcopy(variant.data[path[0]])} | kept  # type: ignore[index]
         place = reduce(getitem, path[:-1], data)  # type: ignore[arg-type]
-        place[path[-1]] = f"{x!r} {unit}" if unit else x  # type: ignore[index]
+        place[path[-1]] = f"{x!r} {unit}" if unit else x
         try:
             type(variant).model_validate(data)
         except ValueError:

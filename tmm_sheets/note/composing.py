@@ -14,7 +14,7 @@ from tmm_sheets.note.document import Block, Figure, Frame, Heading, Note, Number
 from tmm_sheets.note.phrases import Numbering, Scope, Writer
 from tmm_sheets.note.pictures import Pictures
 from tmm_sheets.note.reader import Reader, listed
-from tmm_sheets.note.sections import errata, task
+from tmm_sheets.note.sections import task
 from tmm_sheets.resources import template
 
 if TYPE_CHECKING:
@@ -72,14 +72,15 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
     before: dict[str, list[Block]] = {}
     for name in front_order:
         if name != "abstract":  # which tells of all the others
-            before[name] = writer.blocks(name, base.within(task.fields(reader)) if name == "task" else base)
+            before[name] = writer.blocks(name, base.within(task.task_fields(reader)) if name == "task" else base)
     body: list[Block] = []
     for section in sections:
         if section["needs"] not in parts:
             continue
         name = section["template"]
         try:
-            found = import_module(f"tmm_sheets.note.sections.{section['module']}").fields(reader)
+            module = import_module(f"tmm_sheets.note.sections.{section['module']}")
+            found = getattr(module, f"{name}_fields")(reader)
         except CannotBuild as e:
             reader.problems.append(str(e))
             continue
@@ -88,8 +89,8 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
         summary = summary.within({name: found})
         body += writer.blocks(name, base.within(found))
     body += writer.blocks("conclusion", summary)
-    if project.variant.misprints or errata.of(project):
-        body += writer.blocks("errata", base.within(errata.fields(reader)))
+    if project.variant.misprints or task.errata_of(project):
+        body += writer.blocks("errata", base.within(task.errata_fields(reader)))
     body += [Heading(1, "", said["literature"])]
     body += [Paragraph((f"{i}. {numbering.literature[key]}",), "item") for i, key in enumerate(numbering.cited, 1)]
     sheets = reader.pictures.pages()

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
     from tmm_sheets.task.variant import Variant
 
-FORMATS = ("pdf", "docx")
-"""Formats of the note."""
 PACKAGES = {"pdf": ("typst",), "docx": ("typst", "docx")}
 """What each format is made with; pages of the contents are counted in the PDF for both."""
 

@@ -122,11 +122,6 @@ class Numbering:
         self.part += 1
         return f"{self.section}.{self.part}"
 
-    def unnumbered(self) -> str:
-        """A heading without a number begins: what stands under all of these is counted through."""
-        self.section = 0
-        return ""
-
     def next(self, kind: str, label: str) -> str:
         """Number of the next formula, figure or table of the section."""
         n = self.counts[self.section, kind] = self.counts.get((self.section, kind), 0) + 1
@@ -220,7 +215,9 @@ class Writer:
     def _heading(self, line: str, n: int, scope: Scope) -> Heading:
         level = len(line) - len(line.lstrip("="))
         text = line[level:].strip()
-        number = self.numbering.unnumbered() if text.startswith("!") else self.numbering.heading(level)
+        if text.startswith("!"):  # what stands under all that have no number is counted through
+            self.numbering.section = 0
+        number = "" if text.startswith("!") else self.numbering.heading(level)
         return Heading(level, number, self._plain(text.lstrip("! "), n, scope))
 
     def _conditional(self, word: str, what: str, inner: Lines, other: Lines, scope: Scope) -> Iterator[Block]:

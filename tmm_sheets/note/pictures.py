@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,8 @@ from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Polyline, Text, flat
 from tmm_sheets.note.document import Figure, Sheet
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from tmm_sheets.drawing.marks import Points
     from tmm_sheets.sheets.composed import Composed
 
@@ -57,7 +59,11 @@ def windowed(marks: Iterable[Mark], box: Box, edge: str = "") -> list[Mark]:
 
 
 def _is_within(box: Box, m: Mark) -> bool:
-    return all(box.contains(complex(z)) for p in points_of([m]) for z in p)
+    points = [*points_of([m])]
+    if not points:
+        return True
+    x0, y0, x1, y1 = Box.around(np.concatenate(points))
+    return box.contains(complex(x0, y0)) and box.contains(complex(x1, y1))
 
 
 def _inside(box: Box, m: Mark) -> Iterator[Mark]:
@@ -120,6 +126,7 @@ class Pictures:
         self.sheets = sheets
         self._views: dict[str, list[tuple[int, tuple[int, ...], bool]]] = {}
         self._drawn: dict[str, list[tuple[int, tuple[int, ...], bool]]] = {}
+        self._figures: dict[tuple[str, bool], list[Figure]] = {}
         for n, composed in sheets.items():
             drawing = composed.drawing
             for view in drawing.views:
@@ -154,6 +161,11 @@ class Pictures:
 
         ``own`` takes the marks of that name only, without what else stands in the view.
         """
+        if (name, own) not in self._figures:
+            self._figures[name, own] = self._made(name, own)
+        return self._figures[name, own]
+
+    def _made(self, name: str, own: bool) -> list[Figure]:
         found = self._drawn.get(name) or self._views.get(name) if name in PARTED else self._views.get(name) or self._drawn.get(name)
         if not found:
             return []
@@ -211,9 +223,7 @@ def _within(step: str, role: str, focus: Sequence[str]) -> bool:
 
 def extent(marks: Iterable[Mark]) -> Box:
     """Smallest rectangle round marks with the strokes of their lettering."""
-    boxes = [Box.around(p, MARGIN) for p in points_of(marks)]
-    low, high = zip(*((b[:2], b[2:]) for b in boxes), strict=True)
-    return Box(*map(min, zip(*low, strict=True)), *map(max, zip(*high, strict=True)))
+    return Box.around(np.concatenate([*points_of(marks)]), MARGIN)
 
 
 def scale(box: Box) -> tuple[float, bool]:
@@ -272,17 +282,23 @@ CURVE = 10
 def _gaps(marks: Sequence[Mark], box: Box, count: int) -> list[float]:
     """Heights at which a tall view is best cut: near the equal parts, where the fewest marks are crossed, not below a title."""
     titles = [(m.at.imag - UNDER, m.at.imag + m.height) for m in marks if isinstance(m, Text) and m.height >= TITLE]
-    spans = []
+    crossed = []
     for m in marks:
         if isinstance(m, Line) and abs(m.a.real - m.b.real) < 1e-6 and abs(m.a.imag - m.b.imag) > 0.5 * box.height:
             continue  # an axis or a line of projection through all of it
-        p = flat(m, 3.0)
-        top = m.at.imag + m.height if isinstance(m, Text) else float(p.imag.max())
-        spans += [(float(p.imag.min()), top)] * (CURVE if isinstance(m, Polyline) else 1)
+        heights = flat(m, 3.0).imag
+        top = m.at.imag + m.height if isinstance(m, Text) else heights.max()
+        crossed += [(heights.min(), top)] * (CURVE if isinstance(m, Polyline) else 1)
+
+    def cost(tries: NDArray[np.floating[Any]], spans: Sequence[tuple[float, float]]) -> Any:
+        """How many spans each of some heights goes through."""
+        low, high = np.reshape(spans, (-1, 2)).T[..., np.newaxis]
+        return np.sum((low < tries) & (tries < high), axis=0)
+
     cuts = [box.y0]
     for i in range(1, count):
         ideal = box.y0 + box.height * i / count
-        tries = [ideal + d for d in range(-75, 76)]
-        cuts.append(min(tries, key=lambda y: (
-            sum(a < y < b for a, b in spans) + len(spans) * any(a < y < b for a, b in titles), abs(y - ideal))))  # fmt: skip
+        tries = ideal + np.arange(-75, 76)
+        costs = cost(tries, crossed) + len(crossed) * (cost(tries, titles) > 0)
+        cuts.append(float(tries[np.lexsort((abs(tries - ideal), costs))[0]]))
     return [*cuts, box.y1 + 1]

@@ -281,10 +281,10 @@ class Reader:
         firsts = (next(j for j, b in enumerate(step.args) if b is a) for a in step.args)
         tree = simplified(filled(tree, [*map(expression.Argument, firsts)]))
         head, used = self.letters_of(step), [told[i].symbol for i in arguments(tree)]
-        if isinstance(tree, expression.Argument | expression.Constant) or not all(map(_presentable, (head, *used))):
+        if not isinstance(tree, expression.Operation) or any(map(_OF_PROGRAM.search, (head, *used))):
             return None
-        if _converts(tree) or head in used:
-            return None  # the same quantity in another unit
+        if any(isinstance(p, expression.Constant) and p.value in (1000.0, 1e6) for p in tree.parts) or head in used:
+            return None  # the same quantity in another unit, metres as millimetres
         return self.written(head, tree, told, self.quantity(step, head))
 
     def formulas(self, plan: str) -> list[ShownFormula]:
@@ -459,16 +459,8 @@ _SUM = re.compile(r"(?<!^)[+−](?![^{]*\})")
 _TERM = re.compile(r"·|(?<!^)[+−](?![^{]*\})")
 
 
-def _presentable(symbol: str) -> bool:
-    """Whether letters are letters, and no name of the program."""
-    return not re.search(r"[a-z]{4}|[a-z]\.[a-z]|[a-z]_[a-z]{3}|sign of", symbol)
-
-
-def _converts(tree: expression.Expression) -> bool:
-    """Whether a formula only turns metres into millimetres or back."""
-    return isinstance(tree, expression.Operation) and any(
-        isinstance(p, expression.Constant) and p.value in (1000.0, 1e6) for p in tree.parts
-    )
+_OF_PROGRAM = re.compile(r"[a-z]{4}|[a-z]\.[a-z]|[a-z]_[a-z]{3}|sign of")
+"""In what is no letter but a name of the program."""
 
 
 def _plain(symbol: str) -> bool:

@@ -25,8 +25,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets import catalogue, files, kept, quoting, spelling, words
 from tmm_sheets.errors import BadInput, CannotBuild, Stopped
+from tmm_sheets.output import with_room
 from tmm_sheets.output.build_store import current, outlet, put, record_of
-from tmm_sheets.output.building import Order, build, with_room
+from tmm_sheets.output.building import Order, build
 from tmm_sheets.program import fingerprint, program
 from tmm_sheets.task import title_entries
 from tmm_sheets.words import tell
@@ -69,36 +70,36 @@ class Task(NamedTuple):
     group: str = ""
 
 
-def one(task: Task, order: Order, parent: Path) -> Outcome:
-    """Build one project into its folder below ``parent``; whatever goes wrong is told, not raised."""
-    outcome = copy_context().run(_one, task, order, parent)  # the languages it sets are its own
+def one(task: Task, order: Order) -> Outcome:
+    """Build one project into its folder; whatever goes wrong is told, not raised."""
+    outcome = copy_context().run(_one, task, order)  # the languages it sets are its own
     return replace(outcome, folder=task.folder) if task.student else outcome
 
 
-def _one(task: Task, order: Order, parent: Path) -> Outcome:
+def _one(task: Task, order: Order) -> Outcome:
     words.set_reader(order.reader)
     if not order.kept:
         kept.forgo()
     warnings: list[str] = []
     try:
-        return _built(task, order, parent, warnings)
+        return _built(task, order, warnings)
     except Exception as e:
         from tmm_sheets import defects
 
         file = Path(task.project)
         problem = defects.told(e, ("build", task.project), file if file.is_file() else None,
-                               lambda path: _built(task._replace(project=str(path)), order, parent, []))
+                               lambda path: _built(task._replace(project=str(path)), order, []))
         return Outcome(task.project, problem, warnings=tuple(warnings))
 
 
-def _built(task: Task, order: Order, parent: Path, warnings: list[str]) -> Outcome:
+def _built(task: Task, order: Order, warnings: list[str]) -> Outcome:
     """The outcome of a project; what is to be said of it goes to ``warnings``, too."""
     variant = with_room(catalogue.read(task.project, order.corrected, guessed=bool(task.student)))  # a batch tells one line of each
     warnings += variant.warnings
     own = {key: text for key, text in (("student", task.student), ("group", task.group)) if text}
     names = replace(order.names, options={**order.names.options, **own})
     variant = names.filled(variant)
-    folder = parent / (task.folder or files.folder_name(variant.stem))
+    folder = order.parent / (task.folder or files.folder_name(variant.stem))
     built = build(variant, order, order.outlet(folder))
     handed = dict[str, bool]()
     if task.student:
@@ -115,9 +116,9 @@ _ending = threading.Event()
 """In a process of the pool: no more projects are begun."""
 
 
-def several(tasks: Sequence[Task], order: Order, parent: Path) -> list[Outcome]:
+def several(tasks: Sequence[Task], order: Order) -> list[Outcome]:
     """Build some projects one after the other: the work of one worker, up to the project in work when the batch is told to end."""
-    return [one(task, order, parent) for task in tasks if not _ending.is_set()]
+    return [one(task, order) for task in tasks if not _ending.is_set()]
 
 
 def _start(told: Connection) -> None:
@@ -155,13 +156,13 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def on(works: Sequence[Task], order: Order, parent: Path, jobs: int | None, scheduler: str | None) -> Iterator[Outcome]:
-    """Do tasks on a dask cluster where a scheduler is told, else in so many processes, all processors unless told."""
-    return run_on_dask(works, order, parent, scheduler) if scheduler else carry_out(works, order, parent, jobs or processors())
+def on(works: Sequence[Task], order: Order) -> Iterator[Outcome]:
+    """Do tasks on a dask cluster where the order has a scheduler, else in so many processes, all processors unless told."""
+    return run_on_dask(works, order, order.scheduler) if order.scheduler else carry_out(works, order)
 
 
-def carry_out(works: Sequence[Task], order: Order, parent: Path, workers: int) -> Iterator[Outcome]:
-    """Do tasks in ``workers`` processes; outcomes as they come.
+def carry_out(works: Sequence[Task], order: Order) -> Iterator[Outcome]:
+    """Do tasks in processes of their own; outcomes as they come.
 
     A signal that asks for the end lets each process finish the project in its hands.
 
@@ -170,10 +171,10 @@ def carry_out(works: Sequence[Task], order: Order, parent: Path, workers: int) -
     Stopped
         after the outcomes, when such a signal came.
     """
-    workers = min(workers, len(works))
+    workers = min(order.jobs or processors(), len(works))
     if workers <= 1:
         for work in works:
-            yield one(work, order, parent)
+            yield one(work, order)
         return
     chunks = _chunks(works, workers)
     method = "fork" if "fork" in multiprocessing.get_all_start_methods() else None
@@ -182,7 +183,7 @@ def carry_out(works: Sequence[Task], order: Order, parent: Path, workers: int) -
     with told, end, _signals(lambda: end.send_bytes(b".")) as signals:
         try:
             with ProcessPoolExecutor(workers, context, initializer=_start, initargs=(told,)) as pool:
-                tasks = {pool.submit(several, chunk, order, parent): chunk for chunk in chunks}
+                tasks = {pool.submit(several, chunk, order): chunk for chunk in chunks}
                 for task in as_completed(tasks):
                     try:
                         yield from task.result()
@@ -221,7 +222,7 @@ def _signals(act: Callable[[], None]) -> Iterator[list[int]]:
             signal.signal(number, handler)
 
 
-def run_on_dask(works: Sequence[Task], order: Order, parent: Path, address: str) -> Iterator[Outcome]:
+def run_on_dask(works: Sequence[Task], order: Order, address: str) -> Iterator[Outcome]:
     """Do tasks on a dask cluster whose workers have this program and see the same output folder.
 
     The tasks of a worker that is lost are done by the others.
@@ -243,7 +244,8 @@ def run_on_dask(works: Sequence[Task], order: Order, parent: Path, address: str)
         raise BadInput(tell("no dask scheduler answers at {address}: {why}").format(address=address, why=e), hint=hint) from None
     with client:
         chunks = _chunks(works, max(len(client.nthreads()), 1))
-        tasks = {client.submit(several, chunk, order, parent.absolute(), pure=False): chunk for chunk in chunks}
+        order = replace(order, output=order.parent.absolute())
+        tasks = {client.submit(several, chunk, order, pure=False): chunk for chunk in chunks}
         for task in finished(tasks):
             try:
                 yield from task.result()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from tmm_sheets.sheets.composed import Composed
     from tmm_sheets.task.variant import Variant
 
-TOGETHER, APART = "kinematics_forces_wide", ("kinematics", "forces")
-"""Arrangements of what a linkage is and what acts on it, on one sheet and on two."""
 ONE_FILE = "sheets.pdf"
 """Name of the PDF with all sheets."""
 
@@ -49,11 +47,14 @@ class Target(NamedTuple):
 
 @dataclass(frozen=True)
 class Order:
-    """What is to be built of every project: ``sheets`` (empty: all), formats, their settings, and where it goes.
+    """What is asked of every project: ``sheets`` (empty: all), formats, their settings, and the folder where they go.
 
-    ``force`` makes everything again, also what was changed by hand; ``archive`` puts each project into a zip file; ``one_file``
-    puts all sheets into one PDF. ``language`` is that of the sheets whatever the projects say, empty for theirs; ``reader`` that of
-    the messages: an order may be carried out on another machine. Without ``kept`` every sheet is composed, whatever is kept.
+    ``output`` is the folder of the sheets, of several projects the one with a folder for each, made by so many ``jobs`` or on the
+    cluster of a ``scheduler``. ``with_note`` and ``views`` ask for the note and for pictures of the views; ``show_files`` opens
+    what was made, ``explain`` tells how. ``force`` makes everything again, also what was changed by hand; ``archive`` puts each
+    project into a zip file; ``one_file`` puts all sheets into one PDF. ``language`` is that of the sheets whatever the projects
+    say, empty for theirs; ``reader`` that of the messages: an order may be carried out on another machine. Without ``kept`` every
+    sheet is composed, whatever is kept.
     ``names`` fill the title blocks in.
     """
 
@@ -64,6 +65,13 @@ class Order:
     force: bool = False
     archive: bool = False
     one_file: bool = False
+    output: Path | None = None
+    jobs: int | None = None
+    scheduler: str | None = None
+    with_note: bool = False
+    views: bool = False
+    show_files: bool = False
+    explain: bool = False
     language: str = field(default_factory=words.asked)
     reader: str = field(default_factory=words.reader)
     kept: bool = field(default_factory=kept.used)
@@ -85,6 +93,11 @@ class Order:
                 found += (Target(form, (n,), f"sheet{n}-{k}.{end}", k) for k in range(1, count + 1)) if count > 1 else \
                     (Target(form, (n,), f"sheet{n}.{end}"),)
         return found
+
+    @property
+    def parent(self) -> Path:
+        """Folder with one for each of several projects."""
+        return self.output or Path("out")
 
     def outlet(self, place: Path) -> Outlet:
         """The folder, or the archive of that name."""
@@ -285,17 +298,3 @@ def _refuse_idle_scales(variant: Variant, drawn: Mapping[int, Composed]) -> None
     idle = [name for name in variant.scales if name not in used]
     if idle:
         raise BadInput(variant.problem(tell("no sheet draws a plan of this name"), "scales", name, hint=hint) for name in idle)
-
-
-def with_room(variant: Variant) -> Variant:
-    """The same with two sheets for kinematics and forces where its file names none and one is too small for both."""
-    if variant.project.sheets is not None or TOGETHER not in variant.sheets:
-        return variant
-    from tmm_sheets.project import Project
-    from tmm_sheets.sheets import composition
-
-    with suppress(BadInput, CannotBuild):  # whoever needs its parts says why they cannot be had
-        if any("names" in remark.values for remark in composition.crowded(Project(variant), [1])):  # another sheet helps
-            named = [*APART, *(name for name in variant.sheets if name != TOGETHER)]
-            return variant.model_copy(update={"project": variant.project.model_copy(update={"sheets": tuple(named)})})
-    return variant

@@ -1,8 +1,4 @@
-"""A table of students, CSV or a workbook: who has which task; a header in any of the languages, columns in any order.
-
-A task is told as the manual tells it: a project (shipped, or a file), the task with a variant (``3`` and ``2``: ``sixbar/3:2``), a
-machine with a cipher (``diesel`` or ``дизель`` and ``01-Т-27``).
-"""
+"""The works of a whole group: who is on the list, what each got; and a folder of tasks tried before it is given out."""
 
 from __future__ import annotations
 
@@ -10,18 +6,24 @@ import json
 import os
 import re
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from tmm_sheets import catalogue, csv_tables, files, spelling
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.output.batch import KINDS, Outcome
+from tmm_sheets.project import Project
 from tmm_sheets.task import families
+from tmm_sheets.task.family_folder import FolderFamily
 from tmm_sheets.task.letters import title_text
+from tmm_sheets.task.variant import Variant
 from tmm_sheets.words import both, either, every, tell
+
+# --- who is on the list ------------------------------------------------------------------------------------------------------
 
 COLUMNS = {
     "student": ("student", "name", "surname", "студент", "фамили", "прізвищ", "фио", "піб"),
@@ -255,3 +257,76 @@ def _from(folder: Path, project: str) -> str:
         return Path(os.path.relpath(project, folder)).as_posix()
     except ValueError:  # on another drive of Windows
         return os.path.abspath(project)
+
+
+
+# --- a family of tasks tried -------------------------------------------------------------------------------------------------
+
+CALLED: dict[str, Any] = {"project": {"name", "title", "variant"}, "title_block": True, "given": True}
+"""What a project file says beside its numbers: ciphers that differ in nothing else are assembled once."""
+
+
+@dataclass(frozen=True)
+class Tried:
+    """What came of a machine and a cipher: why it cannot be built, empty where it can, and what is doubtful in it."""
+
+    project: str
+    machine: str
+    problem: str
+    warnings: tuple[str, ...] = ()
+
+
+def tried(folder: Path, quick: bool = False, say: Callable[[str], None] = lambda what: None) -> Iterator[Tried]:
+    """Try a family; with ``quick`` the project files are read only.
+
+    Raises
+    ------
+    BadInput
+        when the family itself cannot be read.
+    """
+    family = FolderFamily(folder)
+    for machine in family.rules.machine:
+        assembled: dict[str, tuple[str, str]] = {}
+        for name in family.every(machine):
+            say(name)
+            warnings: tuple[str, ...] = ()
+            try:
+                variant = family.read(name)
+                numbers = variant.model_dump_json(exclude=CALLED)
+                if not quick and numbers not in assembled:
+                    assembled[numbers] = name, _refused(variant)
+                first, problem = assembled.get(numbers, (name, ""))
+                problem = problem.replace(first, name)
+                warnings = variant.warnings
+            except BadInput as e:
+                problem = str(e)
+            yield Tried(name, f"{family.name}/{machine}", problem, () if problem else warnings)
+
+
+def _refused(variant: Variant) -> str:
+    try:
+        Project(variant).check()
+    except (BadInput, CannotBuild) as e:
+        return str(e)
+    return ""
+
+
+def table_of_tried(found: list[Tried]) -> str:
+    """A line for each machine, then one for each reason with the first cipher that has it."""
+    lines = []
+    for machine in dict.fromkeys(t.machine for t in found):
+        own = [t for t in found if t.machine == machine]
+        good = sum(not t.problem for t in own)
+        doubtful = sum(bool(t.warnings) for t in own)
+        lines.append(tell("{machine}: {n} ciphers, {good} can be built, {doubtful} with doubtful numbers").format(
+            machine=machine, n=len(own), good=good, doubtful=doubtful))
+        reasons: dict[str, list[tuple[Tried, str]]] = {}
+        for t in own:
+            for problem in re.split(r"\n(?=\S)", t.problem) if t.problem else ():
+                reason, _, hint = problem.replace(t.project, machine).partition("\n")
+                reasons.setdefault(reason, []).append((t, hint))
+        for reason, some in reasons.items():
+            (first, hint), *_ = some
+            said = tell("  {n} ciphers, such as {project}: {reason}").format(n=len(some), project=first.project, reason=reason)
+            lines += [said, *([f"  {hint}"] if hint else [])]
+    return "\n".join(lines)

@@ -33,7 +33,7 @@ from tmm_sheets.compare.group import COMPARED
 from tmm_sheets.errors import BadInput
 from tmm_sheets.files import alike, confine
 from tmm_sheets.output import batch
-from tmm_sheets.page import compared, jobs
+from tmm_sheets.page import jobs
 from tmm_sheets.page.workers import Job, Lane, Languages, Limits, Workers
 from tmm_sheets.resources import template
 from tmm_sheets.task import keys
@@ -44,7 +44,7 @@ LONG = Limits(240, 4_000_000_000, "long")
 JOBS: Mapping[str, tuple[Job, Limits]] = {
     "project": (jobs.project, AT_ONCE), "check": (jobs.check, AT_ONCE), "sheet": (jobs.sheet, FRONT),
     "remarks": (jobs.remarks, BEHIND), "scheme": (jobs.scheme, BEHIND), "living": (jobs.living, LONG),
-    "take": (jobs.take, LONG), "compare": (compared.compare, LONG), "group": (jobs.group, LONG),
+    "take": (jobs.take, LONG), "compare": (jobs.compare, LONG), "group": (jobs.group, LONG),
 }  # fmt: skip
 FILES = {"compare": 80_000_000, "group": 400_000_000}
 """Doors that take files, and how many bytes."""
@@ -170,7 +170,7 @@ def _place(name: str, of_group: bool) -> str:
     parts = [part for part in parts if part.strip(".")]
     suffix = Path(parts[-1] if parts else "").suffix.lower()
     if not of_group:
-        return f"{compared.NAME}{suffix}" if suffix in COMPARED else f"{compared.NAME}.other"
+        return f"{jobs.DROPPED}{suffix}" if suffix in COMPARED else f"{jobs.DROPPED}.other"
     if not parts:
         raise HTTPException(422, tell("a file without a name"))
     *student, last = parts[1:] or parts

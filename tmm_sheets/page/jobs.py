@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import zipfile
 from base64 import b64encode
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import redirect_stderr, redirect_stdout
 from html import escape
 from importlib import import_module
@@ -13,8 +13,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tmm_sheets import catalogue, files, kept, progress, words
+from tmm_sheets.compare.findings import Report
+from tmm_sheets.compare.group import DRAWINGS, NUMBERS, PICTURES
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
-from tmm_sheets.output.building import with_room
+from tmm_sheets.output import with_room
 from tmm_sheets.page.workers import Message, Say, told
 from tmm_sheets.program import fingerprint, maker
 from tmm_sheets.project import Project
@@ -218,3 +220,85 @@ def _zipped(paths: Sequence[Path]) -> bytes:
             name = path.relative_to(MADE) if path.is_relative_to(MADE) else path
             archive.writestr(zipfile.ZipInfo(name.as_posix()), path.read_bytes(), zipfile.ZIP_DEFLATED)
     return data.getvalue()
+
+
+
+# --- a drawing that was dropped on the page, compared: theirs and ours as pictures in millimetres of the sheet ---------------
+
+DROPPED = "drawing"
+"""What the file is called here, before its ending."""
+PENCIL, READING = 0.25, 0.5
+"""Errors of a point drawn by hand and of a length read off, mm: those of the command."""
+PIXELS = 4.0
+"""Pixels of theirs in a millimetre."""
+
+
+def compare(asked: Mapping[str, str], say: Say) -> Message:
+    """Compare the one file in this folder as the command ``compare`` does.
+
+    Raises
+    ------
+    BadInput
+        when such a file is not compared.
+    """
+    project = opened(asked)
+    path = next(Path().glob(f"{DROPPED}.*"), Path())
+
+    def told(what: str) -> None:
+        say(say=what)
+
+    if path.suffix in NUMBERS:
+        from tmm_sheets.compare.measured import measured_lengths
+
+        return _found(measured_lengths.compare(project, path, PENCIL, READING, told))
+    if path.suffix in DRAWINGS:
+        return _drawing(project, int(asked["sheet"]) if asked.get("sheet", "").isdecimal() else None, path, told)
+    if path.suffix in PICTURES:
+        return _picture(project, sheet_number(asked, project), path, told)
+    raise BadInput(tell("such a file is not compared"), tell("save it as .dxf, .csv, .jpg, .png or .pdf"))
+
+
+def _picture(project: Project, n: int, path: Path, told: Callable[[str], None]) -> Message:
+    from tmm_sheets.backends import svg
+    from tmm_sheets.compare.photo import image, overlay
+    from tmm_sheets.compare.photo.photo_report import image_report
+    from tmm_sheets.compare.photo.sheet_map import PAPER
+    from tmm_sheets.sheets import sheet
+    try:
+        e = image.examine(project, n, path, None, PENCIL, told)
+    except CannotBuild as refused:
+        shown = next((data for name, data in refused.files.items() if name.endswith(".png")), None)
+        if shown is None:
+            raise
+        return {"refused": str(refused), "theirs": _inline("image/png", shown)}
+    report = image_report(project.variant.project.name, n, path, e.found, e.findings, e.extra, PENCIL, e.notes, e.readings, e.built)
+    theirs = overlay.piece(e.found.ink, e.found.level, PAPER, PIXELS)
+    return _found(report) | {"theirs": _inline("image/png", theirs), "sheet": n,
+                             "ours": _inline("image/svg+xml", svg.render(sheet.compose(project, n)))}
+
+
+def _drawing(project: Project, n: int | None, path: Path, told: Callable[[str], None]) -> Message:
+    from dataclasses import replace
+
+    from tmm_sheets.backends import svg
+    from tmm_sheets.compare import overlays
+    from tmm_sheets.compare.cad import cad_drawing
+    from tmm_sheets.drawing.marks import Polyline
+
+    e = cad_drawing.compared(project, n, path, None, PENCIL, told)
+    theirs = svg.render(replace(e.blank, marks=tuple(overlays.theirs(e.space))))
+    exact = svg.render(replace(e.blank, marks=tuple(Polyline(z, "thin") for z in e.exact)))
+    pictures = {"theirs": _inline("image/svg+xml", theirs), "ours": _inline("image/svg+xml", exact)}
+    return _found(e.report) | pictures | {"sheet": e.sheet}
+
+
+def _inline(kind: str, data: bytes) -> Message:
+    return {"type": kind, "data": b64encode(data).decode()}
+
+
+def _found(report: Report) -> Message:
+    """What a report lists, what is right left out, and the whole of it as text."""
+    tree = report.tree
+    wrong = [f for f in tree["findings"] if f["verdict"] in ("red", "amber")]
+    return {"text": report.text, "notes": list(report.notes), "start": tree["start"], "findings": wrong,
+            "summary": tree["summary"]}

@@ -143,15 +143,24 @@ def formula_of(step: Step) -> expression.Expression | None:
     return with_bare_numbers(tree, step)
 
 
-def formula_in_numbers(step: Step, tree: expression.Expression, k: int) -> str:
-    """The formula with the numbers of position ``k``, LaTeX; empty if one of them is undefined."""
+def _formula_in_numbers(step: Step, tree: expression.Expression, k: int, patterns: dict[str, str]) -> str:
+    """The formula with the numbers of position ``k``, LaTeX; empty if one of them is undefined.
+
+    ``patterns`` keep it with marks in the places of its numbers: it is written alike for all numbers of the same signs.
+    """
     values = [value_at(a, k) for a in (*step.args, step)]
     if any(np.ndim(v) or isinstance(v, str) or not isinstance(v, int | float | complex | np.number) for v in values):
         return ""
     *texts, value = map(_number_latex, values)
-    return f"{latex(tree, texts)} = {value}"
+    signs = "".join("-" if text[0] == "-" else "0" if text[0] in "0123456789\\" else "a" for text in texts)
+    if signs not in patterns:
+        patterns[signs] = _spelt(tree, [_operand(text, chr(_MARK + i)) for i, text in enumerate(texts)])
+    shown = patterns[signs].translate(dict(enumerate((text.removeprefix("-") for text in texts), _MARK)))
+    return f"{shown} = {value}"
 
 
+_MARK = 0xE000
+"""The first of the letters that are free for any use."""
 _SIGNS = {"+": " + ", "−": " - ", "·": " \\cdot ", "×": " \\times ", ";": ";\\, "}
 _COMMANDS = {"re": r"\mathrm{Re}", "im": r"\mathrm{Im}", "tg": r"\mathrm{tg}", "arctg": r"\mathrm{arctg}", "НОД": r"\gcd",
              **{name: f"\\{name}" for name in ("sin", "cos", "arcsin", "arccos", "max", "min", "exp", "log")}}  # fmt: skip
@@ -172,14 +181,20 @@ LATEX: Alphabet[str] = {
 
 def latex(tree: expression.Expression, texts: Sequence[str]) -> str:
     """LaTeX of a formula, the texts, letters or numbers, in the places of its arguments."""
-    return " ".join(spelt(of_tree(tree, list(map(_operand, texts))), LATEX).split())
+    return _spelt(tree, list(map(_operand, texts)))
 
 
-def _operand(text: str) -> Operand:
+def _spelt(tree: expression.Expression, operands: Sequence[Operand]) -> str:
+    return " ".join(spelt(of_tree(tree, operands), LATEX).split())
+
+
+def _operand(text: str, mark: str = "") -> Operand:
+    """A letter or a number in a formula, or a ``mark`` in the place of its figures."""
     negative = text.startswith("-")
     if negative or text[0].isdigit() or text.startswith("\\left("):
-        return Operand(Figures("−" + text[1:] if negative else text, text), None, negative)
-    return Operand(Letters(text))
+        figures = mark or text.removeprefix("-")
+        return Operand(Figures(f"−{figures}" if negative else figures, text), None, negative)
+    return Operand(Letters(mark or text))
 
 
 def _argument_latex(a: Any) -> str:
@@ -225,6 +240,12 @@ def record(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any
     CannotBuild
         when nothing of the project can be computed.
     """
+    found, problem, _ = recorded(project, numbers)
+    return found, problem
+
+
+def recorded(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any], CannotBuild | None, StepIndex]:
+    """The same, and the index of the steps in it."""
     from tmm_sheets.sheets import sheet
 
     asked = list(numbers) or list(range(1, len(project.sheets) + 1))
@@ -254,7 +275,7 @@ def record(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any
         "sheets": [sheet_record(n, composed, book.steps) for n, composed in attempt.drawn.items()],
         **({"not_computed": {name: str(reason) for name, reason in lost.items()}} if lost else {}),
     }  # fmt: skip
-    return found, together(lost, "recorded", others=True) if lost else None
+    return found, together(lost, "recorded", others=True) if lost else None, book
 
 
 def as_json(found: dict[str, Any]) -> str:
@@ -356,10 +377,11 @@ class _StepTexts:
             labels = ("",)
         tree = formula_of(step)
         sentence, shown, lines = {}, {}, {}
+        patterns: dict[str, str] = {}
         with np.errstate(invalid="ignore", divide="ignore"):
             for k, label in enumerate(labels):
                 sentence[label] = protocol.sentence(step, k, self.to_mm, self.unit, self.sizes)
-                if tree is not None and (text := formula_in_numbers(step, tree, k)):
+                if tree is not None and (text := _formula_in_numbers(step, tree, k, patterns)):
                     shown[label] = text
                 if found := _helpers(step, k):
                     lines[label] = found

@@ -35,23 +35,19 @@ class StepIndex:
         self._ids: dict[int, str] = {}
         self._plan_of: dict[int, str] = {}
         self._keys: dict[tuple[int, int], str] = {}
-        given = list(plans)
-        for plan in given:
+        for plan in plans:
             self.plans[_free(plan.name, self.plans)] = plan
         for name, plan in self.plans.items():
             self.of[name] = []
             for step in (*plan.auxiliaries.values(), *plan):
                 self._plan_of.setdefault(id(step), name)
-        for name, plan in self.plans.items():
-            for step in with_ancestors([*plan, *plan.auxiliaries.values()]):  # those without a plan
-                self._plan_of.setdefault(id(step), name)
         seen: set[int] = set()
-        for plan in self.plans.values():
+        for name, plan in self.plans.items():
             for step in with_ancestors((*plan, *plan.auxiliaries.values()), seen):
-                name = self._plan_of[id(step)]
-                found = self._ids[id(step)] = _free(f"{name}/{step.name}", self.steps)
+                own = self._plan_of.setdefault(id(step), name)
+                found = self._ids[id(step)] = _free(f"{own}/{step.name}", self.steps)
                 self.steps[found] = step
-                self.of[name].append(found)
+                self.of[own].append(found)
 
     def id(self, step: Step) -> str:
         """Id of a step; raises KeyError if it is not recorded."""

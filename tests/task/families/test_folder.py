@@ -10,7 +10,7 @@ from tests.few import few
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput
-from tmm_sheets.output import family_check
+from tmm_sheets.output import roster
 from tmm_sheets.project import Project
 from tmm_sheets.task import families, family_folder, family_tables
 
@@ -28,7 +28,7 @@ def folder(tmp_path, monkeypatch):
 @pytest.mark.parametrize("quick", few((True, False), True))
 def test_all_ciphers_of_both_machines_can_be_built(quick):
     """Their project files can be read; where each digit stands in either place once, and in trials of all, they assemble."""
-    found = [*family_check.tried(EXAMPLE, quick)]
+    found = [*roster.tried(EXAMPLE, quick)]
     assert len(found) == 200
     assert [t for t in found if t.problem] == []
     assert {t.project for t in found if t.warnings} == {f"department/feeder@4{b}" for b in range(10)}
@@ -209,7 +209,7 @@ def test_ciphers_of_many_digits_are_tried_in_all_their_figures(folder, monkeypat
     assert {len({*figures}) for figures in zip(*(name.partition("@")[2] for name in names), strict=True)} == {10}
     checked = []
     monkeypatch.setattr(Project, "check", lambda project: checked.append(project))
-    found = [*family_check.tried(folder)]
+    found = [*tried(folder)]
     assert [len(found), len(checked)] == [2 * family_tables.MOST_CIPHERS, 200]
 
 

@@ -28,7 +28,7 @@ Term = tuple[Sequence[NoteQuantity], bool]
 """Factors of a term of a sum, and whether it is added."""
 
 
-def fields(r: Reader) -> dict[str, Any]:
+def forces_fields(r: Reader) -> dict[str, Any]:
     """Everything of the force analysis at the position that is told, reactions at all of them."""
     r.project.check_forces()
     study = r.project.study

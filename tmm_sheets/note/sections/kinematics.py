@@ -27,7 +27,7 @@ MOST_COLUMNS = 9
 """Columns of a table over the positions beside the number of the position."""
 
 
-def fields(r: Reader) -> dict[str, Any]:
+def kinematics_fields(r: Reader) -> dict[str, Any]:
     """Positions, velocities at all of them, accelerations at one in words and at all in a table."""
     study, cycle = r.project.study, r.project.cycle
     m, v, a = study.mechanism, study.velocities, study.accelerations

@@ -1,29 +1,40 @@
-"""The task: what the project file gives, in the words of ``[data]``, the diagrams of the loads, the scheme."""
+"""The task and what follows from it at once: what is given, what does not agree in the manual, structure, lengths of the links."""
 
 from __future__ import annotations
 
+import re
 import tomllib
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from math import degrees, isclose
-from typing import Any
+from math import degrees, isclose, pi
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import results
+from tmm_sheets.construction import expression
 from tmm_sheets.construction.equation import read
 from tmm_sheets.construction.formula import letters_of
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.meanings import meaning_of
-from tmm_sheets.note.document import NumberInText, Rows, Text, enumerated, lettered
+from tmm_sheets.meanings import meaning_of, tables_of
+from tmm_sheets.note.document import NumberInText, Rows, ShownFormula, Text, enumerated, lettered
 from tmm_sheets.note.phrases import set_text
-from tmm_sheets.note.reader import Reader
+from tmm_sheets.note.reader import NoteQuantity, Reader, marked, symbol_of
+from tmm_sheets.numbers import written
+from tmm_sheets.resources import template, variants
 from tmm_sheets.task import synthesis_refs, units
+from tmm_sheets.words import decimal_sign, of_file, tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+
+# --- what the project file gives, in the words of [data]; diagrams of the loads; scheme ---------------------------------------
 
 Row = tuple[Text, ...]
 Item = Mapping[str, Any]
 """The table of the project file that a value stands in."""
 
 
-def fields(r: Reader) -> dict[str, Any]:
+def task_fields(r: Reader) -> dict[str, Any]:
     """Given numbers with their letters, the diagrams of the loads, and the scheme."""
     try:
         results.told(r.project, None, refused={})
@@ -215,3 +226,183 @@ def _head(r: Reader, of: _Diagram) -> Text:
 def pressure_of(force: str) -> str:
     """Letters of the pressure that a force is computed from: p with the index of the force."""
     return f"p_{{{force.lstrip('FQPR')}}}"
+
+
+
+# --- errata -------------------------------------------------------------------------------------------------------------------
+
+SHARED = {"gear": ("lugansk/shaper", "lugansk/engine")}
+"""Parts that several projects of a manual have in common."""
+
+
+def errata_of(project: Project) -> list[dict[str, str]]:
+    """Places of the manual that are known to be wrong, of the project worked out there; none for one that was changed."""
+    name, known = project.variant.project.name, tables_of(template("note/errata.toml"))
+    found = [*known.get(name, []), *(e for part, names in SHARED.items() if name in names for e in known[part])]
+    shipped = variants() / f"{name}.toml"
+    return found if found and shipped.is_file() and shipped.read_text(encoding="utf-8") == project.variant.text else []
+
+
+def errata_fields(r: Reader) -> dict[str, Any]:
+    """Both tables, and whether the project takes the suggested numbers."""
+    said = r.words["errata"]
+    known = [[_cell(e[k], said) for k in ("place", "what", "printed", "should", "basis")] for e in errata_of(r.project)]
+    return {
+        "corrected": any(m.corrected for m in r.project.variant.misprints),
+        "errata": (tuple((h,) for h in said["head"]), *map(tuple, known)) if known else (),
+        "misprints": _misprints(r, said["suspected"]),
+    }
+
+
+def _misprints(r: Reader, head: list[str]) -> Rows:
+    rows: list[tuple[Text, ...]] = [tuple((h,) for h in head)]
+    for i, m in enumerate(r.project.variant.misprints):
+        unit, place = r.unit(m.unit), f"misprint[{i}]"
+        numbers = (NumberInText(written(str(x)), place, float(x)) for x in (m.printed, m.suggested))
+        rows.append(((lettered(m.symbol), f", {unit}" if unit else ""), *((n,) for n in numbers),
+                     tuple(marked(_written(tr(m.reason)), place, "", r.language))))  # fmt: skip
+    return tuple(rows) if len(rows) > 1 else ()
+
+
+def _written(reason: str) -> str:
+    """A reason with the signs and the decimal sign of the paper."""
+    text = re.sub(r"(?<=\d)\.(?=\d)", decimal_sign(), reason)
+    for typed, sign in (("*", "·"), (">=", "≥"), (" - ", " − "), ("..", "…")):
+        text = text.replace(typed, sign)
+    return re.sub(r"(\d[.,]\d+)\^2", r"\1²", text)
+
+
+def _cell(text: str, said: dict[str, Any]) -> Text:
+    """A cell: words by their keys, places by theirs, letters between dollar signs."""
+    if m := re.fullmatch(r"([ts])(\d[\d.]*)", text):
+        return (said["table" if m[1] == "t" else "section"].format(n=m[2]),)
+    told = set_text(re.sub(r"\{(\w+)\}", lambda m: said["words"].get(m[1], m[0]), text))
+    return tuple(re.sub(r"(?<=\d),(?=\d)", decimal_sign(), x) if isinstance(x, str) else x for x in told)
+
+
+
+# --- structure ----------------------------------------------------------------------------------------------------------------
+
+def structure_fields(r: Reader) -> dict[str, Any]:
+    """Links, pairs, mobility and groups of the mechanism."""
+    m, said = r.project.mechanism, r.words["structure"]
+    n, p5 = len(m.links), len(m.pairs)
+    turning = sum(p.motion == "rotation" for p in m.pairs)
+    groups = [
+        {
+            "links": g.lettered,
+            "kind": str(g.kind.number),
+            "triad": g.kind.grade == 3,
+            "form": tr(g.form) if g.kind.grade == 2 else g.kind.told(g),
+            "nth": str(i),
+            "mobility": _mobility(r, f"W_{{{g.name}}}", len(g.links), len(g.kind.pairs(m, g)), 0, f"structure.groups[{i}]"),
+            "pairs": enumerated((lettered(p.name), f" ({', '.join(p.links)})") for p in g.kind.pairs(m, g)),
+        }
+        for i, g in enumerate(reversed(m.groups), 1)
+    ]
+    return {
+        "groups": groups,
+        "p5": NumberInText(str(p5), "structure.pairs", p5),
+        "turning": NumberInText(str(turning), "structure.pairs", turning),
+        "sliding": NumberInText(str(p5 - turning), "structure.pairs", p5 - turning),
+        "structure": m.structure,
+        "mobile": m.mobility == 1,
+        "turning_only": turning == p5,
+        "second_class": m.grade == 2,
+        "grade_to": said["grades_to"][m.grade - 1],
+        "third": m.grade == 3,
+        "count": len(groups),
+        "mobility": _mobility(r, "W", n, p5, m.mobility, "structure.W"),
+        "first": _mobility(r, f"W_{{{m.crank.link}}}", 1, 1, 1, "structure.first"),
+        "links": (
+            tuple((h,) for h in said["links_head"]),
+            (("0",), (said["frame"],), _points(m.fixed)),
+            *(((name,), (of_file(link.title or "–"),), _points(m.link_points(name))) for name, link in m.links.items()),
+        ),
+        "pairs": (
+            tuple((h,) for h in said["pairs_head"]),
+            *(((lettered(p.name),), (", ".join(p.links),), (said[p.motion],), ("5",)) for p in m.pairs),
+        ),
+    }
+
+
+def _points(names: Iterable[str]) -> Text:
+    return enumerated((lettered(name),) for name in names)
+
+
+def _mobility(r: Reader, symbol: str, n: int, p5: int, value: int, step: str) -> ShownFormula:
+    """Chebyshev's formula W = 3n - 2p5 - p4."""
+    a = [expression.Argument(i) for i in range(3)]
+    tree = expression.Operation("-", (3 * a[0] - 2 * a[1], a[2]))
+    quantities = [NoteQuantity("n", n, step=step), NoteQuantity("p_5", p5, step=step), NoteQuantity("p_4", 0, step=step)]
+    return r.written(symbol, tree, quantities, NoteQuantity("", value, step=step))
+
+
+
+# --- lengths found, or given and checked --------------------------------------------------------------------------------------
+
+NEAR = 1.0
+"""Difference from what is asked, per cent, that a drawing does not show."""
+
+
+def synthesis_fields(r: Reader) -> dict[str, Any] | None:
+    """Formulas of the synthesis, the table of lengths, what the dead positions give; None where all is given and nothing stops."""
+    synthesis, strokes = r.project.variant.synthesis, r.project.cycle.strokes
+    if synthesis is None and strokes is None:
+        return None
+    head = tuple((h,) for h in r.words["kinematics"]["sizes_head"])
+    return {
+        "found": synthesis is not None,
+        "steps": list(_steps(r)) if synthesis is not None else [],
+        "lengths": (head, *(((lettered(g.symbol),), (r.number(g.value, "", g.step),)) for g in r.lengths())),
+        "strokes": strokes is not None,
+        **(_strokes(r, strokes) if strokes is not None else {}),
+    }
+
+
+def _steps(r: Reader) -> Iterator[dict[str, Any]]:
+    """Formulas of the lengths one after another, and what is taken instead of a number that came out."""
+    _ = r.project.synthesis.lengths
+    for step in r.project.synthesis.plan:
+        said = r.formula(step)
+        if said is not None and said.numbers is not None:
+            yield {"formula": said}
+        elif step.name.endswith("′") and isinstance(step.value, float):
+            yield {"taken": lettered(symbol_of(step)), "value": r.of(step)}
+
+
+def _strokes(r: Reader, strokes: Any) -> dict[str, Any]:
+    """The stroke, and the ratio of the times of both strokes beside the one that is asked."""
+    turn = (strokes.end - strokes.begin) % (2 * pi) if len(strokes.runs) else 0.0
+    equal = abs(turn - pi) <= 1e-3
+    found = {"stroke": r.number(strokes.length, "m", "cycle.strokes"), "output": lettered(strokes.output), "equal": equal}
+    if equal or not 0 < turn < 2 * pi:
+        return found
+    ratio = turn / (2 * pi - turn)
+    a = expression.Argument(0)
+    found |= {
+        "K": r.written(
+            "K",
+            expression.Operation("/", (a, expression.Operation("-", (expression.Constant(360.0), a)))),
+            [NoteQuantity("φ_{рх}", degrees(turn), "deg", step="dead-positions")],
+            NoteQuantity("", ratio, "", step="dead-positions"),
+        ),
+        "ratio": r.number(ratio, "", "dead-positions"),
+        "faster": r.number(1 / ratio, "", "dead-positions") if ratio < 1 else None,
+    }
+    cycle = r.project.variant.cycle
+    if cycle is not None and cycle.coefficient:
+        asked = float(cycle.coefficient)
+        off = 100 * abs(ratio - asked) / asked
+        found |= {
+            "asked": r.number(asked, "", "cycle.coefficient"),
+            "off": r.number(off, "%", "dead-positions", digits=2),
+            "near": off < NEAR,
+            "theta": r.written(
+                "θ",
+                expression.Constant(180.0) * (a - 1) / (a + 1),
+                [NoteQuantity("K", asked, "", step="cycle.coefficient")],
+                NoteQuantity("", 180 * (asked - 1) / (asked + 1), "deg", step="cycle.coefficient"),
+            ),
+        }
+    return found
