@@ -38,19 +38,16 @@ def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch, as
             told = "" if worst is None else tell("{condition:11.2f} in {step}").format(condition=worst[0], step=worst[1])
             counts = f"{len(steps):7}{len(done):11}{len(steps) - len(done):9}"
             lines.append(f"  {plan.name:28}{counts}{of_reader(f'{ms:.3f}'):>11}{told}")
-    lines += _searches(project)
-    lines += ["", *_evenness(drawings), "", "{:5}{:>8}".format(tell("sheet"), tell("marks"))]
-    for n, drawing in drawings.items():
-        kinds = Counter(type(mark).__name__.lower() for mark in drawing.marks)
-        lines.append(f"{n:5}{len(drawing.marks):8}   {', '.join(f'{count} {kind}' for kind, count in kinds.most_common())}")
+    kinds = {n: Counter(type(mark).__name__.lower() for mark in drawing.marks) for n, drawing in drawings.items()}
     ours = sorted(m.removeprefix("tmm_sheets.") for m in sys.modules if m.startswith(("tmm_sheets.methods.", "tmm_sheets.sheets.")))
-    lines += ["", tell("imported: {modules}").format(modules=", ".join(name for name in HEAVY if name in sys.modules)),
-              tell("of our own: {modules}").format(modules=", ".join(ours))]
-    lines += ["", "{:26}{:>8}".format(tell("phase"), tell("ms"))]
-    lines += [f"{name:26}{of_reader(f'{1000 * seconds:.1f}'):>8}" for name, seconds in watch.phases.items()]
-    lines.append("{:26}{:>8}".format(tell("together"), of_reader(f"{1000 * sum(watch.phases.values()):.1f}")))
-    lines += _asked(project, drawings, askers)
-    return "\n".join(lines)
+    phases = watch.phases | {tell("together"): sum(watch.phases.values())}
+    return "\n".join([
+        *lines, *_searches(project), "", *_evenness(drawings), "", "{:5}{:>8}".format(tell("sheet"), tell("marks")),
+        *(f"{n:5}{of.total():8}   {', '.join(f'{count} {kind}' for kind, count in of.most_common())}" for n, of in kinds.items()),
+        "", tell("imported: {modules}").format(modules=", ".join(name for name in HEAVY if name in sys.modules)),
+        tell("of our own: {modules}").format(modules=", ".join(ours)), "", "{:26}{:>8}".format(tell("phase"), tell("ms")),
+        *(f"{name:26}{of_reader(f'{1000 * seconds:.1f}'):>8}" for name, seconds in phases.items()),
+        *_asked(project, drawings, askers)])
 
 
 def _asked(project: Project, drawings: Mapping[int, Drawing], askers: Askers) -> Iterator[str]:
@@ -114,9 +111,8 @@ class StepReader(NamedTuple):
     @property
     def said(self) -> str:
         """For a report."""
-        if not self.sheet:
-            return tell("read by {module}").format(module=self.module)
-        return tell("read by {module} for sheet {n}, {view}").format(module=self.module, n=self.sheet, view=self.view)
+        return tell("read by {module}").format(module=self.module) if not self.sheet else \
+            tell("read by {module} for sheet {n}, {view}").format(module=self.module, n=self.sheet, view=self.view)
 
 
 class Askers:
@@ -157,9 +153,8 @@ class Askers:
 
 def _for(step: Step) -> str:
     """What a step is made for."""
-    if isinstance(step.seconds, SearchCount):
-        return tell("search: {purpose}").format(purpose=tell(step.seconds.purpose))
-    return tell("for {step}").format(step=step.path or step.name)
+    return tell("search: {purpose}").format(purpose=tell(step.seconds.purpose)) if isinstance(step.seconds, SearchCount) else \
+        tell("for {step}").format(step=step.path or step.name)
 
 
 @contextmanager

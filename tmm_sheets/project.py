@@ -192,6 +192,18 @@ class Project:
 
         return applied_of(self.variant, self.mechanism, self.cycle)
 
+    def abscissae(self, turned: Any) -> Any:
+        """What graphs are plotted over: angles that the crank has turned, rad, or behind an input how far that has gone then, m.
+
+        Over the angle the link that an input turns would have nothing but straight lines.
+        """
+        if self.mechanism.drive is None:
+            return turned
+        from tmm_sheets.methods.linkage.drive import places_of
+
+        here, first = (places_of(self.mechanism, self.cycle.world(angle)) for angle in (turned, 0.0))
+        return abs(here - first)
+
     @cached_property
     def driver(self) -> GearForce | InputForce | None:
         """Gear force on the crank shaft, or force on an input; None when a pure moment balances the crank."""

@@ -14,7 +14,7 @@ import click
 from tmm_sheets.localized_cli import Group, Listed, Option
 from tmm_sheets.version import __version__
 
-MODULES = {"build": "build note optimise page roster serve watch", "drawings": "bench compare plot stress",
+MODULES = {"build": "build defence note optimise page roster serve watch", "drawings": "bench compare plot stress",
            "reading": "check family list new protocol record show solve why"}
 """The commands of each module, there under their names with ``run_`` before."""
 NAMES = {
@@ -22,6 +22,7 @@ NAMES = {
     "build": "Draw the sheets of one PROJECT or of several; what has not changed since the last time is not made again.",
     "check": "Read and assemble PROJECT, tell what no pencil can draw; write nothing but a scheme asked for.",
     "compare": "Compare a hand drawing of PROJECT with the exact one: measured lengths, a photograph or a CAD drawing.",
+    "defence": "Ask what a teacher asks at the sheets of PROJECT, with the answers; write a clear PDF to lay over each sheet.",
     "family": "Try a family of tasks, a folder with family.toml: read and assemble every cipher of every machine.",
     "list": "List the shipped projects; with a WORD those that have it in their names or titles.",
     "new": "Write a project file NAME.toml to begin with; what is not told (task, student, group) is asked.",

@@ -298,6 +298,32 @@ def come_of(running: Iterable[Outcome], total: int) -> tuple[list[Outcome], Call
 
 NOTE_FORMATS = ("pdf", "docx")
 """Formats of the explanatory note."""
+RED = (0.8, 0.0, 0.0)
+"""Colour of what is laid over a sheet, shares of red, green and blue."""
+
+
+@PROJECT
+@CORRECTED
+@SHEETS
+@option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Folder of the overlays.  [default: out/<project>]")
+@option("--force", is_flag=True, help="Overwrite what was changed by hand.")
+@NO_CACHE
+def run_defence(project: str, corrected: bool, sheets: tuple[int, ...], output: Path | None, force: bool) -> None:
+    from tmm_sheets.backends.pdf import render_coloured
+    from tmm_sheets.record.defence import defended
+
+    opened = open_project(project, corrected)
+    folder = folder_of(opened.variant, output)
+    files.check_folder(folder)
+    found, problem = defended(opened, opened.variant.chosen(sheets))
+    paths, kept = put(folder, {f"overlay{n}.pdf": render_coloured([(of.overlay, RED)]) for n, of in found.items()}, force)
+    for n, of in found.items():
+        click.echo("\n".join(of.said(n)))
+    for path in paths:
+        click.echo(path)
+    tell_all(opened.variant, kept)
+    if problem is not None:
+        raise problem
 
 
 @PROJECT

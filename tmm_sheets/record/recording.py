@@ -66,9 +66,7 @@ def to_json(value: Any) -> Any:
 
 
 def _defined(found: Any) -> Any:
-    if isinstance(found, list):
-        return [_defined(x) for x in found]
-    return found if isfinite(found) else None
+    return [_defined(x) for x in found] if isinstance(found, list) else found if isfinite(found) else None
 
 
 def value_kind(value: Any, positions: int) -> dict[str, Any]:
@@ -250,13 +248,10 @@ def recorded(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, A
 
     asked = list(numbers) or list(range(1, len(project.sheets) + 1))
     refused: dict[str, CannotBuild] = {}
-    whole = len(asked) == len(project.sheets)
-    tree = results.told(project, None, refused=refused) if whole else {}
+    tree = results.told(project, None, refused=refused) if len(asked) == len(project.sheets) else {}
     attempt = sheet.attempt(project, asked, steps=True)
     tree = tree or results.told(project, project.made, refused=refused)
-    scales: dict[str, Scale] = {}
-    for composed in attempt.drawn.values():
-        scales |= composed.scales
+    scales = {name: scale for composed in attempt.drawn.values() for name, scale in composed.scales.items()}
     behind = dict(leaves(tree))
     for told in behind.values():
         _ = getattr(told, "value", None)  # a plan that results come from is recorded, whether or not a sheet shows it
@@ -348,10 +343,9 @@ def _argument(book: StepIndex, a: Any, n: int) -> dict[str, Any]:
 
 def unit(step: Step, plan: Plan) -> str:
     """Unit of a step: of its rule, its kind or its plan; empty for a direction and a bare ratio."""
-    kind = step.rule.gives
     if step.rule.unit:
         return "" if step.rule.unit == "1" else step.rule.unit
-    return {"angle": "rad", "inclination": "rad", "direction": "", "number": ""}.get(kind, plan.unit)
+    return {"angle": "rad", "inclination": "rad", "direction": "", "number": ""}.get(step.rule.gives, plan.unit)
 
 
 class _StepTexts:
@@ -369,11 +363,10 @@ class _StepTexts:
         One entry with an empty label if an argument is a row not over the positions; the first position only if there are more
         than ``MAX_SENTENCES``, or for nodes, which have no labels.
         """
-        labels = self.plan.labels
-        if len(labels) > MAX_SENTENCES or not any(labels):
-            labels = labels[:1]
+        every = self.plan.labels
+        labels = every if any(every) and len(every) <= MAX_SENTENCES else every[:1]
         lengths = {np.shape(x)[0] for x in map(value_of, (*step.args, step)) if not isinstance(x, str | Curve) and np.ndim(x)}
-        if lengths - {len(self.plan.labels)}:
+        if lengths - {len(every)}:
             labels = ("",)
         tree = formula_of(step)
         sentence, shown, lines = {}, {}, {}
@@ -396,9 +389,8 @@ def _helpers(step: Step, k: int) -> list[dict[str, Any]]:
     if step.rule.helpers is None:
         return []
     value = step.at(k)
-    if step.rule.gives != "curve" and (np.ndim(value) or np.isnan(value)):
-        return []
-    return [_helper(h) for h in step.rule.helpers(tuple(value_at(a, k) for a in step.args), value)]
+    return [] if step.rule.gives != "curve" and (np.ndim(value) or np.isnan(value)) else \
+        [_helper(h) for h in step.rule.helpers(tuple(value_at(a, k) for a in step.args), value)]
 
 
 def _helper(h: Helper) -> dict[str, Any]:
@@ -443,8 +435,7 @@ def sheet_record(number: int, composed: Composed, known: Container[str]) -> dict
     marks = []
     for i, mark in enumerate(composed.drawing.marks):
         view = bisect_right(starts, i) - 1
-        block = 0 <= view < len(parts) and parts[view].draw == "title block"
-        told = _mark(i, mark, names[view] if view >= 0 else "", block, known)
+        told = _mark(i, mark, names[view] if view >= 0 else "", 0 <= view < len(parts) and parts[view].draw == "title block", known)
         marks.append(told | {"lettering": letterings[i]} if i in letterings else told)
     drawing = composed.drawing
     return {"sheet": number, "title": drawing.title, "size": [drawing.width, drawing.height], "frames": frames, "marks": marks}
@@ -493,11 +484,8 @@ def _mark(number: int, mark: Mark, view: str, block: bool, known: Container[str]
 
 
 def _role(mark: Mark, block: bool) -> str:
-    if isinstance(mark, Text):
-        return "text"
-    if mark.by is not None:
-        return mark.by.role
-    return "frame" if block else ROLE_BY_STYLE.get(mark.style, "symbol")
+    return "text" if isinstance(mark, Text) else \
+        mark.by.role if mark.by is not None else "frame" if block else ROLE_BY_STYLE.get(mark.style, "symbol")
 
 
 def mark_geometry(mark: Mark) -> dict[str, Any]:
@@ -506,9 +494,8 @@ def mark_geometry(mark: Mark) -> dict[str, Any]:
         return {"line": [_point(mark.a), _point(mark.b)]}
     if isinstance(mark, Arc):
         centre, radius = _point(mark.centre), round(float(mark.radius), MM_DECIMALS)
-        if abs(mark.end - mark.start) >= 2 * 3.141592653589:
-            return {"circle": {"centre": centre, "radius": radius}}
-        return {"arc": {"centre": centre, "radius": radius, "from": round(float(mark.start), 9), "to": round(float(mark.end), 9)}}
+        return {"circle": {"centre": centre, "radius": radius}} if abs(mark.end - mark.start) >= 2 * 3.141592653589 else \
+            {"arc": {"centre": centre, "radius": radius, "from": round(float(mark.start), 9), "to": round(float(mark.end), 9)}}
     if isinstance(mark, Polyline):
         return {"polyline": _points(mark.points), **({"closed": True} if mark.closed else {})}
     if isinstance(mark, Fill):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -58,15 +58,20 @@ def lines(project: Project, result: str) -> Iterator[str]:
         raise BadInput(tell("{result} has no step behind it: it is a number of the program").format(result=result))
     _ = told.value
     book = book_of(project)
-    at = told.at[0] if told.at else _position(project)
+    at = told.at[0] if told.at else force_position(project)
+    yield from reasons(with_ancestors([told.step]), at, book)
+    yield f"{result}{tell(_OF_PART[told.part])} = {_shown(told, at, book)}"
+
+
+def reasons(steps: Iterable[Step], at: str, book: StepIndex) -> Iterator[str]:
+    """A line for each of some steps at a position, before it those of the givens that no line had yet."""
     given: set[str] = set()
-    for step in with_ancestors([told.step]):
+    for step in steps:
         for arg in step.args:
             if isinstance(arg, GivenNumber | GivenPoint | Given) and arg.name not in given:
                 given.add(arg.name)
                 yield _given(arg, at, book, step)
         yield _line(step, at, book)
-    yield f"{result}{tell(_OF_PART[told.part])} = {_shown(told, at, book)}"
 
 
 def _no_part(project: Project, result: str, part: str) -> BadInput:
@@ -86,12 +91,10 @@ def _unknown(project: Project, result: str, known: Any) -> BadInput:
     return BadInput(tell('{project} has no result "{result}"').format(project=name, result=result), hint=hint)
 
 
-def _position(project: Project) -> str:
+def force_position(project: Project) -> str:
     """Label of the position of the force analysis."""
     cycle = project.variant.cycle
-    if cycle is None:
-        return ""
-    return cycle.force_position or project.cycle.labels[0]
+    return "" if cycle is None else cycle.force_position or project.cycle.labels[0]
 
 
 def _index(step: Step, at: str, book: StepIndex) -> int:

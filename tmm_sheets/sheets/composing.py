@@ -212,9 +212,10 @@ def composed(project: Project, n: int) -> Composed:
         views=_views(canvas), dimensions=tuple(canvas.dimensions), forms=tuple(canvas.forms))
     left = leaving(canvas, INSIDE, TITLE_BLOCK)
     project.shown.add(n)
+    flat = function("diagrams.too_flat")(project) if "hodograph.bearing" in (view.draw for view in plan.offers) else ()
     return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
                     tuple(canvas.frames), _symbols(project, drawing), _dead(project, plan),
-                    tuple(composition.left_out(project, [n])), tuple(illegible))
+                    (*composition.left_out(project, [n]), *flat), tuple(illegible))
 
 
 def ask_again(project: Project, n: int) -> None:

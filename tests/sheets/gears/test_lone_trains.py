@@ -9,7 +9,7 @@ from tests.few import few, seldom
 from tests.project_files import project
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink_index import empty_cells
-from tmm_sheets.drawing.marks import Box, Line, Text
+from tmm_sheets.drawing.marks import Arc, Box, Line, Text
 from tmm_sheets.sheets.gears import train
 from tmm_sheets.sheets.gears.train_scheme import TrainScheme, columns_of
 from tmm_sheets.sheets.sheet import composed
@@ -113,3 +113,45 @@ def test_a_measured_ratio_is_that_of_the_lengths_it_is_written_with():
     _, sheet = drawn("shafts")
     texts = "".join(m.text for m in sheet.drawing.marks if isinstance(m, Text) and m.of == "plan_checks.of_train")
     assert "384,0/137,1 = 2,801" in texts
+
+
+def stages(*teeth):
+    """Planetary stages one after another, the ring of each held: sun, planet and ring by their teeth."""
+    names = [[f"{3 * k + n}" for n in (1, 2, 3)] for k in range(len(teeth))]
+    meshes = [{part: wheel, "planet": planet, "carrier": f"H{k}"} for k, (sun, planet, ring) in enumerate(names, 1)
+              for part, wheel in (("sun", sun), ("ring", ring))]
+    return project({"train": {
+        "module": "2 mm", "teeth": {name: z for own, of in zip(names, teeth, strict=True) for name, z in zip(own, of, strict=True)},
+        "speeds": {"1": "1440 rpm"} | {ring: "0 rpm" for *_, ring in names}, "mesh": meshes,
+        "shafts": [[f"H{k}", f"{3 * k + 1}"] for k in range(1, len(teeth))]}})  # fmt: skip
+
+
+def rings(own):
+    """Middles and radii of the circles drawn with a thick line: the rings, which stand."""
+    marks = composed(own, 1).drawing.marks
+    return sorted({(round(m.centre.real, 3), round(m.centre.imag, 3), round(m.radius, 3)) for m in marks
+                   if isinstance(m, Arc) and m.style == "main" and m.by.role == "symbol" and m.radius > 20.0})
+
+
+def test_end_views_of_unlike_stages_stand_side_by_side_to_one_scale():
+    found = rings(stages((24, 30, 84), (18, 27, 72), (20, 25, 70)))
+    assert [radius for *_, radius in sorted(found, key=lambda ring: -ring[2])] == pytest.approx([84.0, 72.0, 70.0])
+    for i, (x, y, radius) in enumerate(found):
+        for other_x, other_y, other in found[:i]:
+            assert abs(complex(x - other_x, y - other_y)) > radius + other
+
+
+def test_stages_alike_have_one_end_view():
+    assert len(rings(stages((24, 30, 84), (24, 30, 84)))) == 1
+
+
+@pytest.mark.parametrize(("own", "signs"), [
+    (lambda: stages((24, 30, 84), (18, 27, 72)), [("1", -1, "n_{вх}"), ("H2", 1, "n_{вых}")]),
+    (lambda: project(PROJECTS["shafts"]), [("1", -1, "n_{вх}"), ("4", 1, "n_{вых}")]),
+    (lambda: project({"train": PROJECTS["planetary train"]["train"] | {"speeds": {"1": "960 rpm", "3": "20 rpm"}}}),
+     [("1", -1, "n_{1}"), ("H", 1, "n_{вых}")]),
+    (lambda: project(PROJECTS["sun drives"]), [("1", -1, "n_{вх}"), ("H", 1, "n_{вых}")]),
+])
+def test_shafts_that_lead_in_and_out_are_marked(own, signs):
+    opened = own()
+    assert [*TrainScheme(opened.train if "train" in opened.parts else opened.reducer).leading()] == signs

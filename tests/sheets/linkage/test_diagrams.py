@@ -263,3 +263,24 @@ def test_an_output_that_does_not_move_is_refused_by_its_name_and_told_by_check()
         drawn(fixed)
     (said,) = diagrams.motion_low(fixed, 1, ViewPlace("diagrams.motion", BOX, {}))
     assert str(said).startswith("2 does not turn or move")
+
+
+@pytest.mark.parametrize("name", ["boom.toml"])
+def test_behind_an_input_graphs_are_plotted_over_its_way(name):
+    """The positions divide the stroke evenly; over the angle of the crank the boom itself would be a straight line."""
+    own = project_files.known(name)
+    places = own.abscissae(own.cycle.turned)
+    start, end = own.mechanism.drive.place
+    assert places == pytest.approx(np.linspace(0.0, abs(end - start), len(places)), abs=1e-9)
+
+
+def test_behind_a_slider_too():
+    drive = {"input": {"link": "3", "start": "0.46 m", "end": "0.34 m", "speed": "0.2 m/s", "side": 1}}
+    own = project(project_files.HEAD, {k: v for k, v in SLIDER.items() if k != "crank"}, {
+        "crank": {"link": "1", "pivot": "O", "pin": "A", "length": "0.1 m"}}, drive, {"cycle": {"start": "input", "positions": 6}})
+    assert own.abscissae(own.cycle.turned) == pytest.approx(np.linspace(0.0, 0.12, 7), abs=1e-9)
+
+
+def test_over_the_angle_of_a_crank_that_turns():
+    own = project(SLIDER, EVEN)
+    assert own.abscissae(own.cycle.turned) is own.cycle.turned

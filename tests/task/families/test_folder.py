@@ -209,7 +209,7 @@ def test_ciphers_of_many_digits_are_tried_in_all_their_figures(folder, monkeypat
     assert {len({*figures}) for figures in zip(*(name.partition("@")[2] for name in names), strict=True)} == {10}
     checked = []
     monkeypatch.setattr(Project, "check", lambda project: checked.append(project))
-    found = [*tried(folder)]
+    found = [*roster.tried(folder)]
     assert [len(found), len(checked)] == [2 * family_tables.MOST_CIPHERS, 200]
 
 

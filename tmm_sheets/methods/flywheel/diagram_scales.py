@@ -280,10 +280,10 @@ class Diagrams(Intervals, ABC):
         return None
 
     @staticmethod
-    def enlarged(energy: Scale, span: float) -> Scale:
-        """Scale factor with which a graph of energies that is ``span`` mm high gets ``MAIN``, so many times that of ``energy``."""
-        own = reach("μ_{ΔE}", energy.unit, span * energy.mu, MAIN)
-        while not plain(energy.mu / own.mu):
+    def enlarged(usual: Scale, span: float) -> Scale:
+        """Scale factor with which a graph that is ``span`` mm high gets ``MAIN``, a plain number of times its usual size."""
+        own = reach(f"μ_{{Δ{usual.symbol[2:]}}}", usual.unit, span * usual.mu, MAIN)
+        while not plain(usual.mu / own.mu):
             own = replace(own, mu=finer(own.mu))
         return own
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.expression import Reals, primitive
+from tmm_sheets.construction.expression import Floats, Reals, primitive
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.step import Given, GivenNumber, Helper, Plan, Rule, Step
 from tmm_sheets.errors import CannotBuild
@@ -124,6 +124,18 @@ def _reach(m: Mechanism, drive: Drive) -> tuple[float, float]:
     if drive.place[0] < to_pivot.real:
         return float(to_pivot.real - outer), float(to_pivot.real - inner)
     return float(to_pivot.real + inner), float(to_pivot.real + outer)
+
+
+def places_of(m: Mechanism, phi: Floats) -> Floats:
+    """Places of the input at crank angles, rad, by arithmetic: what tells the crank angles, the other way round."""
+    drive = m.drive
+    assert drive is not None
+    pin = m.fixed[m.crank.pivot] + m.crank.length * np.exp(1j * phi)
+    if not drive.slides:
+        return np.asarray(np.abs(pin - m.fixed[drive.far]))
+    guide = m.guides[drive.group.guides[0]]
+    at = (pin - guide.at) * ar.unit(guide.direction).conjugate()
+    return np.asarray(at.real + drive.group.side * np.sqrt(drive.group.lengths[0] ** 2 - at.imag**2))
 
 
 def input_cycle(m: Mechanism, positions: int, *, zero: str = "0") -> Cycle:

@@ -34,10 +34,12 @@ HEADS = 66.0
 """Height the diagrams leave to headings, axes and dimensions, mm."""
 HEAD = 22.0
 """Where the head of a diagram begins beside its axis, mm: the letter of the quantity stands before it."""
-TITLE = 8.0
-"""Height of a title of one line over a view, mm."""
+TITLE, FOOT = 8.0, 22.0
+"""Height of a title of one line over a view, and of what stands under the lowest diagram, mm."""
 ANGLE = "α"
 """Letter of the pressure angle; an arrangement may name another one as the option ``angle``."""
+WIDEST = 36.0
+"""Greatest distance of the diagrams of the motion from one another, mm: farther apart they are no longer compared."""
 BEHIND = 13.0
 """So far the axis of the cam angle goes beyond the phases, mm."""
 BEYOND = 2.0
@@ -59,8 +61,7 @@ def distinct(labels: tuple[str, ...], x: Points | NDArray[np.float64]) -> list[i
 
 def lines_of_text(canvas: Canvas, box: Box, lines: Sequence[str]) -> None:
     """Lines of results at the foot of a view's place."""
-    top = box.y0 + 3.0 + 7.0 * (len(lines) - 1)
-    canvas.lines(complex(box.x0 + 6.0, top), lines, 7.0, size_for(lines, box.width - 8.0, 3.5))
+    canvas.lines(complex(box.x0 + 6.0, box.y0 + 3.0 + 7.0 * (len(lines) - 1)), lines, 7.0, size_for(lines, box.width - 8.0, 3.5))
 
 
 def raised(box: Box, room: Box, height: float) -> tuple[Box, Box]:
@@ -93,8 +94,7 @@ def in_degrees(symbol: str) -> str:
 
 def reach_of_motion(m: FollowerMotion) -> tuple[float, float]:
     """How far the diagrams reach to the left and to the right of their origins, mm."""
-    left = max(max(m.scales.h1, m.scales.h2) + 6.0, m.circle_end + BEYOND)
-    return left, float(m.scales.phi.mm(m.law.fall.end)) + BEHIND
+    return max(max(m.scales.h1, m.scales.h2) + 6.0, m.circle_end + BEYOND), float(m.scales.phi.mm(m.law.fall.end)) + BEHIND
 
 
 def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -112,8 +112,8 @@ def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     downs = [max(float(-c.imag.min()), 0.0) for c in curves]
     left, right = reach_of_motion(m)
     x0 = box.x0 + left + max(box.width - left - right, 0.0) / 2
-    foot = 22.0  # numbers and dimensions of the phases under the lowest diagram
-    gap = (area.height - foot - sum(ups) - sum(downs)) / 3
+    # Numbers and dimensions of the phases stand under the lowest diagram; what is left of a high place is in one piece under them.
+    gap = min((area.height - FOOT - sum(ups) - sum(downs)) / 3, WIDEST)
     origins, y = [], area.y1
     for up, down in zip(ups, downs, strict=True):
         y -= gap + up
@@ -163,8 +163,8 @@ def _phase_angles(canvas: Canvas, m: FollowerMotion, base: complex) -> None:
         if p.angle > 0:
             a, b = (base + float(m.scales.phi.mm(v)) for v in (p.start, p.end))
             full = f"{p.letters} = {number(degrees(p.angle))}°"
-            inside = letter(full, 3.5).width <= abs(b - a) - 2.0
-            canvas.dimension(a, b, -8.0, full, factor=degrees(m.scales.phi.mu), apart=None if inside else ((a + b) / 2 - 8j, -1j))
+            canvas.dimension(a, b, -8.0, full, factor=degrees(m.scales.phi.mu),
+                             apart=None if (letter(full, 3.5).width <= abs(b - a) - 2.0) else ((a + b) / 2 - 8j, -1j))
 
 
 def _heads(m: FollowerMotion) -> tuple[str, str, str]:
@@ -201,8 +201,7 @@ def _ordinates(s: PlayerStage, m: FollowerMotion, steps: list[Step]) -> None:
     for k in kept:
         at = s.frame(points[k].real)
         s.line(steps[k], at, s.at(steps[k]), "thin")
-        width = letter(m.law.labels[k], height).width
-        shift = -width / 2 + (-1j * (1.3 + height) if points[k].imag > -1e-6 else 1.3j)
+        shift = -letter(m.law.labels[k], height).width / 2 + (-1j * (1.3 + height) if points[k].imag > -1e-6 else 1.3j)
         s.canvas.number(complex(at), complex(at + shift), m.law.labels[k], height, pitch, first=k == 0)
 
 
@@ -235,8 +234,7 @@ def _auxiliary_circle(s: PlayerStage, m: FollowerMotion) -> None:
     pen.line(centre - 1j * reach, centre + 1j * reach, "centre")
     angle = 1.38  # beside the upright radius: the letters have the rest of the way to the next one
     for name, radius in radii.items():
-        tip = centre + rect(radius, pi - angle)
-        s.pen(name, "dimension").arrow(centre, tip, "thin", 2.5)
+        s.pen(name, "dimension").arrow(centre, centre + rect(radius, pi - angle), "thin", 2.5)
         canvas.label(centre + rect(0.75 * radius, pi - angle), name, 1j * rect(1, pi - angle), 3.5, 0.6, leader=False)
 
 
@@ -288,8 +286,8 @@ class OverAngle:
         across = Scale("μ_φ", handy(degrees(end) / room.width), tr("deg/mm"))
         tall = Scale(scale[0], handy((high - low) / (room.height - above)), scale[1])
         length, low, high = float(across.mm(degrees(end))), tall.mm(low), tall.mm(high)
-        o = complex(room.x0 + (room.width - length) / 2, room.y0 - low + (room.height - (high - low)) / 2)
-        return cls(across, tall, unit, o, length, low, high)
+        return cls(across, tall, unit,
+            complex(room.x0 + (room.width - length) / 2, room.y0 - low + (room.height - (high - low)) / 2), length, low, high)
 
     def placed(self, canvas: Canvas, plan: Plan) -> PlayerStage:
         """A plan as this diagram: abscissae in radians, ordinates in its unit."""
@@ -362,12 +360,11 @@ def _clear_of(curve: Points, level: complex, side: int, wide: float) -> float:
     """Where along a level its name, so wide, stands clear of a curve and its ordinates, the farther to the right the better, mm."""
     inside = side * (level.imag - curve.imag)
     along, reach = curve.real - level.real, wide / 2 + 1.0
-    middles = np.arange(along[-1] - reach, reach, -2.0)
 
     def clear(x: float) -> float:  # a function with its types: mypy takes seconds to find those of a lambda here
         return min(float(inside[np.abs(along - x) <= reach].min()), NAMED)
 
-    return float(max(middles, key=clear, default=along[-1] / 2))
+    return float(max(np.arange(along[-1] - reach, reach, -2.0), key=clear, default=along[-1] / 2))
 
 
 def _exceeded(d: OverAngle, canvas: Canvas, cam: RollerCam, letter_of: str) -> None:
@@ -412,9 +409,8 @@ def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
 def _second_derivative(cam: Cam) -> dict[str, Any]:
     """The second derivative at the numbered positions by the side it is taken from: both limits where it jumps."""
     before, after = cam.exact.before.dds.value, cam.exact.after.dds.value
-    if np.allclose(before, after, rtol=0, atol=1e-9 * float(np.abs((before, after)).max())):
-        return {"": before}
-    return {" (φ−0)": before, " (φ+0)": after}
+    return {"": before} if np.allclose(before, after, rtol=0, atol=1e-9 * float(np.abs((before, after)).max())) else \
+        {" (φ−0)": before, " (φ+0)": after}
 
 
 def _diagram_rows(m: FollowerMotion, second: Mapping[str, Any]) -> Iterator[list[str]]:
@@ -480,8 +476,7 @@ def spring_diagram(cam: Cam, box: Box) -> tuple[float, OverAngle]:
     _, force, inertia = (step.value for step in cam.spring.course)
     lines = _spring_lines(cam.spring, cam.law.symbol == "S")
     text = max(letter(line, 3.5).width for line in lines) + 16.0
-    beside = _lines_beside(box.width, box.height)
-    area = box.inset(14, 8, text + 12, 32) if beside else box.inset(14, 14 + 7.0 * len(lines), 20, 32)
+    area = box.inset(14, 8, text + 12, 32) if _lines_beside(box.width, box.height) else box.inset(14, 14 + 7.0 * len(lines), 20, 32)
     every = np.concatenate((force, inertia))
     span = float(min(inertia.min(), 0.0)), float(every.max())
     return float(np.ptp(every)), OverAngle.fitted(area, cam.law.fall.end, span, ("μ_F", tr("N/mm")))

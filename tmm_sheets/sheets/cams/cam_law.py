@@ -54,14 +54,14 @@ def _formulas(symbol: str, phase: Phase, head: str) -> list[str]:
     """Formulas of one phase under its heading, of the return those of the way back; its greatest second derivative."""
     most, angle, back = f"{symbol}_{{max}}", phase.letters, phase.travel < 0
     minus, forms = "−" if back else "", _written(phase.law)
-    lines = [head] if forms else []
+    lines = [head if forms else head.partition(" ")[0]]  # of a law without formulas its word alone
     for where, (s, ds, dds) in forms:
         lines += [f"{where}:"] if where else []
         lines += [f"{symbol} = {most}·[1 − {s}]" if back else f"{symbol} = {most}·{s}",
                   f"{symbol}' = {minus}{most}/{angle}·{ds}", f"{symbol}'' = {minus}{most}/{angle}^2·{dds}"]
     of = Quantity(number(phase.law.peak), phase.law.peak), Quantity(most, abs(phase.travel)), Quantity(angle, phase.angle)
-    result = Quantity(f"|{symbol}''|_{{max}}", phase.amplitude, "m" if symbol == "S" else "")
-    return [*lines, equation(lambda peak, most, angle: peak * most / angle**2, of, result)]
+    return [*lines, equation(lambda peak, most, angle: peak * most / angle**2, of,
+                             Quantity(f"|{symbol}''|_{{max}}", phase.amplitude, "m" if symbol == "S" else ""))]
 
 
 def _written(law: Law) -> list[tuple[str, tuple[str, ...]]]:
@@ -81,5 +81,5 @@ def _pieces_of(tree: Expression) -> list[tuple[str, Expression]]:
     if not isinstance(tree, Operation) or tree.name != BY_PIECES:
         return [("", tree)]
     borders = [lettered(border, ["x"]) for border in tree.parts[2::2]]
-    where = [f"x < {borders[0]}", *(f"{a} < x < {b}" for a, b in pairwise(borders)), f"x > {borders[-1]}"]
-    return list(zip(where, tree.parts[1::2], strict=True))
+    return list(zip([f"x < {borders[0]}", *(f"{a} < x < {b}" for a, b in pairwise(borders)), f"x > {borders[-1]}"],
+                    tree.parts[1::2], strict=True))

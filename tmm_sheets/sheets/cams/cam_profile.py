@@ -172,8 +172,7 @@ class _ProfilePicture:
         y0, y1 = float(self.points.imag.min()), float(self.points.imag.max())
         top = max(self.scale.mm(y1), self.scale.mm(self.guide) + over) if over else self.scale.mm(y1)
         middle = complex(self.scale.mm((x0 + x1) / 2), (self.scale.mm(y0) + top) / 2)
-        spare = max(rooms[0] - float(self.scale.mm(x1 - x0)) - LETTERS, 0.0)
-        self.origin = complex(room.centre - middle - BESIDE * spare)
+        self.origin = complex(room.centre - middle - BESIDE * max(rooms[0] - float(self.scale.mm(x1 - x0)) - LETTERS, 0.0))
         self.roller = float(self.scale.mm(radius))
         self.hole = min(1.8, 0.3 * self.roller)  # that its axis turns in
         self.start = phase(complex(inv.plan["A_0" if self.kind == "rocker" else "B_0"].value) * self.turn)
@@ -201,9 +200,8 @@ class _ProfilePicture:
         for x in (room.x1 - width, room.x0):
             away = []
             for y in (room.y1, room.y0 + height):
-                across = np.maximum(np.maximum(x - ink.real, ink.real - x - width), 0.0)
-                along = np.maximum(np.maximum(y - height - ink.imag, ink.imag - y), 0.0)
-                away.append(float(np.hypot(across, along).min()))
+                away.append(float(np.hypot(np.maximum(np.maximum(x - ink.real, ink.real - x - width), 0.0),
+                                           np.maximum(np.maximum(y - height - ink.imag, ink.imag - y), 0.0)).min()))
             top, foot = away
             if max(away) > 4.0:
                 return complex(x, room.y0 + height if foot > top + HOLE or top <= 4.0 else room.y1)
@@ -277,21 +275,19 @@ def _given(cam: Any, letter_of: str = ANGLE) -> list[list[str]]:
     else:
         rows = [head, [tr("Stroke of the follower S, mm"), number(d.stroke * 1e3)], phases, angle,
                 [in_mm("S_0"), in_full(z.s0)], [in_mm("e"), in_full(z.e)], [in_mm("r_0"), in_full(z.r0)]]
-    rows.append([in_mm("r_p"), number(cam.roller * 1e3)])
-    if d.closure == "geometric":
-        rows.append([tr("Angle between the arms"), f"{fixed(degrees(float(cam.apart.value)), 2)}°"] if "rocker" in cam.traits
-                    else [tr("Between the rollers L, mm"), in_full(float(cam.apart.value))])
-    return rows
+    apart = [] if d.closure != "geometric" else [
+        [tr("Angle between the arms"), f"{fixed(degrees(float(cam.apart.value)), 2)}°"] if "rocker" in cam.traits else
+        [tr("Between the rollers L, mm"), in_full(float(cam.apart.value))]]
+    return [*rows, [in_mm("r_p"), number(cam.roller * 1e3)], *apart]
 
 
 def _radii(project: Project, options: dict[str, Any]) -> tuple[str, list[list[str]]]:
     """Cam angle and radii, mm, from the drawn points."""
     cam: Cam = project.cam
     inv = cam.inversion
-    columns = [(in_degrees("φ"), np.degrees(inv.phi))]
-    if "roller" in cam.traits:
-        columns.append((in_mm("|OB|"), inv.plan.length(inv.plan["O"], inv.centres).value * 1e3))
-    columns.append((in_mm("|OF|"), inv.plan.length(inv.plan["O"], inv.plan["F"]).value * 1e3))
+    measured = {"|OB|": inv.centres, "|OF|": inv.plan["F"]} if "roller" in cam.traits else {"|OF|": inv.plan["F"]}
+    columns = [(in_degrees("φ"), np.degrees(inv.phi)), *(
+        (in_mm(name), inv.plan.length(inv.plan["O"], end).value * 1e3) for name, end in measured.items())]
     return tr("Radii of the profile"), [[tr("No."), *(head for head, _ in columns)], *(
         [inv.plan.labels[k], *(fixed(float(values[k]), 2) for _, values in columns)] for k in distinct(inv.plan.labels, inv.phi))]
 
@@ -303,9 +299,7 @@ radii = listed.Upright(_radii)
 def _circles(s: PlayerStage, picture: _ProfilePicture) -> None:
     """Circles r0, e and l0 with their radii, drawn where the cam dwells: no follower line is there."""
     cam, origin, scale, canvas = picture.cam, picture.origin, picture.scale, s.canvas
-    radii = [("r_0", cam.r0, 0.3)]
-    if picture.kind == "tappet":
-        radii.append(("e", abs(cam.zone.e), 0.17))  # type: ignore[attr-defined]
+    radii = [("r_0", cam.r0, 0.3), *([("e", abs(cam.zone.e), 0.17)] if picture.kind == "tappet" else [])]  # type: ignore[attr-defined]
     for (_, radius, _), step in zip(radii, ("C" if picture.kind == "rocker" else "N", "T"), strict=False):
         s.pen(step, "construction").circle(origin, scale.mm(radius), "thin")
     reach = scale.mm(cam.r0) + 6.0
@@ -356,8 +350,8 @@ def _inverted(s: PlayerStage, picture: _ProfilePicture) -> None:
         start = phase(mark * picture.turn)
         ends = sorted((start, start + right * turn))
         here = s.position(int(np.argmin(np.abs(inv.axis.value - mark))))
-        radius = abs(here.at(inv.axis) - picture.origin)
-        here.pen(inv.centres, "construction").arc(picture.origin, radius, ends[0], ends[1], "construction")
+        here.pen(inv.centres, "construction").arc(picture.origin, abs(here.at(inv.axis) - picture.origin), ends[0], ends[1],
+                                                  "construction")
 
 
 def _rod(s: PlayerStage, picture: _ProfilePicture) -> None:
@@ -372,7 +366,7 @@ def _path(s: PlayerStage, picture: _ProfilePicture, first: int, table: Box) -> N
     marks = [s.position(k).at(inv.axis) for k in range(len(inv.plan.labels))]
     if picture.kind == "rocker":
         a0 = s.at("A_0")
-        along = clear_dimensions.lengths(np.array(marks), a0)
+        along = [abs(marks[0] - a0) * float(np.angle((p - a0) / (marks[0] - a0))) for p in np.array(marks)]
         arm, way = abs(marks[0] - a0), 1.0 if max(along) > -min(along) else -1.0
         start = phase(marks[0] - a0)
         clear_dimensions.numbered(s, inv.axis, first, [way * t for t in along], inv.plan.labels,
@@ -399,9 +393,8 @@ def _rocker(s: PlayerStage, picture: _ProfilePicture) -> None:
     cam, at, canvas = picture.cam, picture.at, s.canvas
     inv = cam.inversion
     a0, b0 = s.at("A_0"), s.at("B_0")
-    radius = abs(a0 - picture.origin)
     ends = sorted(picture.start + cam.right * v for v in (0.0, cam.law.fall.end))
-    s.pen(inv.ends, "construction").arc(picture.origin, radius, ends[0], ends[1], "thin")
+    s.pen(inv.ends, "construction").arc(picture.origin, abs(a0 - picture.origin), ends[0], ends[1], "thin")
     for name, end in (("A_0", a0), ("B_0", b0)):
         s.line(name, picture.origin, end, "thin")
     for k, (before, after) in enumerate(pairwise(inv.ends.value), 1):
@@ -428,10 +421,9 @@ def _rocker(s: PlayerStage, picture: _ProfilePicture) -> None:
 def _flat(s: PlayerStage, picture: _ProfilePicture) -> None:
     """Flat follower in position 0 and the plates of the inverted positions, whose envelope is the profile."""
     cam, at = picture.cam, picture.at
-    inv = cam.inversion
     for k, (a, b) in enumerate(_plates(cast("FlatCam", cam))):
         s.position(k).line("⊥ON", complex(at(a)), complex(at(b)), "main" if k == 0 else "construction")
-    for k in range(len(inv.plan.labels)):
+    for k in range(len(cam.inversion.plan.labels)):
         s.position(k).dot("F", 0.5, "main")
     _rod(s, picture)
 
@@ -503,8 +495,7 @@ def roller(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     scale = standard((float(np.ptp(every.real)), room.width), (float(np.ptp(every.imag)), room.height))
     box, room = raised(box, room, scale.mm(float(np.ptp(every.imag))))
     canvas.title(box, tr("Choice of the radius of the roller"), ratio(scale))
-    middle = complex((every.real.max() + every.real.min()) / 2, (every.imag.max() + every.imag.min()) / 2)
-    origin = room.centre - scale.mm(middle)
+    origin = room.centre - scale.mm(complex((every.real.max() + every.real.min()) / 2, (every.imag.max() + every.imag.min()) / 2))
 
     s = placed(canvas, plan, complex(origin), scale.mu)
     at = s.frame
@@ -515,8 +506,7 @@ def roller(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         # Equal arcs about both ends meet on the perpendicular through the middle of the chord.
         for end_, other in ((at(a), at(b)), (at(b), at(a))):
             for side in (1, -1):
-                crossing = (end_ + other) / 2 + side * 0.9j * (at(b) - at(a))
-                s.pen("M", "symbol").arc_mark(end_, crossing, 2.5, "construction")
+                s.pen("M", "symbol").arc_mark(end_, (end_ + other) / 2 + side * 0.9j * (at(b) - at(a)), 2.5, "construction")
     s.pen("ρ_min", "dimension").arrow(at(centre), at(d), "thin", 3.0)
     s.dot("M", 0.7, "main")
     outwards = (d - centre) / abs(d - centre)
@@ -531,20 +521,17 @@ def roller(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
 def _roller_lines(cam: RollerCam, mu: float) -> list[str]:
     """The least radius of curvature as it is measured, and the radius of the roller by both rules."""
     drawn_rho, rules = float(cam.inversion.plan["ρ_min"].value), cam.roller_rules
-    found = tr("|MD| = {length} mm;  ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm)")
-    if cam.rho_min < cam.sharpest.rho * (1 - 1e-6):
-        found = tr("|MD| = {length} mm;  ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm); of the second disc {second} mm")
+    found = tr("|MD| = {length} mm;  ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm); of the second disc {second} mm") \
+        if cam.rho_min < cam.sharpest.rho * (1 - 1e-6) else \
+        tr("|MD| = {length} mm;  ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm)")
     lines = [found.format(length=fixed(drawn_rho / mu, 1), drawn=_mm(drawn_rho), exact=_mm(cam.sharpest.rho),
                           second=_mm(cam.rho_min))]
     for rule in rules:
-        low, high = rule.limits
-        if low == high:
-            lines.append(tr("r_p ≤ {share} {radius} = {limit} mm").format(
-                share=number(rule.shares[0]), radius=rule.symbol, limit=_mm(low)))
-            continue
-        shares = f"({number(rule.shares[0])}…{number(rule.shares[1])})"
+        shares, limits = map(number, rule.shares), map(_mm, rule.limits)
+        one = rule.limits[0] == rule.limits[1]
         lines.append(tr("r_p ≤ {share} {radius} = {limit} mm").format(
-            share=shares, radius=rule.symbol, limit=f"{_mm(low)}…{_mm(high)}"))
+            share=next(shares) if one else f"({'…'.join(shares)})", radius=rule.symbol,
+            limit=next(limits) if one else "…".join(limits)))
     met = all(cam.roller <= rule.limits[1] * (1 + 1e-9) for rule in rules)
     taken = tr("Taken: r_p = {radius} mm") if met else tr("Taken: r_p = {radius} mm (more than recommended)")
     lines.append(taken.format(radius=number(cam.roller * 1e3)))

@@ -43,8 +43,8 @@ def motion(project: Project, view: ViewPlace) -> BorderNode:
     m = project.cam.motion
     left, right = cam_views.reach_of_motion(m)
     width = left + max(right, cam_views.heads_width(m))
-    high = sum(m.heights) + cam_views.TITLE + cam_views.HEADS
-    return leaf(view.box, Need(least=(width, high), most=(width, view.box.height), drawn=lambda w, h: w * h))
+    return leaf(view.box, Need(least=(width, (sum(m.heights) + cam_views.TITLE + cam_views.HEADS)), most=(width, view.box.height),
+                               drawn=lambda w, h: w * h))
 
 
 def table(project: Project, view: ViewPlace) -> BorderNode:

@@ -101,8 +101,7 @@ def of_tappet(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     stage, smooth = placed(canvas, z.plan, origin, mu), placed(canvas, z.curve_plan, origin, mu)
     at = stage.frame
     v, o, b, c = at(apex), stage.at("O"), stage.at("B"), stage.at("C")
-    cone = np.array([v, at(low - depth * slope), at(low + depth * slope)])
-    hatch_polygon(canvas, cone, 4.0)
+    hatch_polygon(canvas, np.array([v, at(low - depth * slope), at(low + depth * slope)]), 4.0)
     for (touch, side), top, step, border in zip(touches, tops, z.touching, z.borders, strict=True):
         stage.line(border, at(top), at(low - depth * slope * side), "axis")
         if abs(touch) > 0:
@@ -172,8 +171,8 @@ def _rays(s: PlayerStage, z: Zone, letter_of: str, axis: float | None = None) ->
         here = turn.position(k)
         here.line(step, o, here.at(step))
         if axis is None:
-            up = 1j * np.exp(1j * z.cones.turn * z.exact.law.s(law.positions[k]))
-            here.line(step, here.at(step), here.at(step) - NORMAL * up, "axis")
+            here.line(step, here.at(step),
+                      here.at(step) - NORMAL * (1j * np.exp(1j * z.cones.turn * z.exact.law.s(law.positions[k]))), "axis")
         if z.beyond is not None and k > law.parts and min(abs(points[k] - points[[0, law.parts]])) * 1e9 > 1:
             here.dot(step, 0.5, "main")
             name, height = (law.labels[k], 3.5) if axis is not None else (f"{law.labels[k]}_D", 2.5)
@@ -181,14 +180,14 @@ def _rays(s: PlayerStage, z: Zone, letter_of: str, axis: float | None = None) ->
     if axis is not None:
         k = int(np.argmax(np.abs(np.angle(points[1:law.parts] - z.apex.value) - pi / 2))) + 1
         ray = float(np.angle(points[k] - z.apex.value))
-        reach = abs(turn.position(k).at(step) - o)
-        canvas.angle_mark(o, min(axis, ray), max(axis, ray), 0.8 * reach, f"{letter_of}_{{{law.labels[k]}}}")
+        canvas.angle_mark(o, min(axis, ray), max(axis, ray), 0.8 * abs(turn.position(k).at(step) - o),
+                          f"{letter_of}_{{{law.labels[k]}}}")
 
 
 def _measured(name: str, segment: str, value: float, scale: str, mu: float) -> str:
     """A main dimension, m, from its segment on paper and the scale factor."""
-    length = Quantity(segment, value / mu, "", digits_for(value / mu, 2), 2)
-    return equation(mul, (length, Quantity(scale, mu)), Quantity(name, value, "m"))
+    return equation(mul, (Quantity(segment, value / mu, "", digits_for(value / mu, 2), 2), Quantity(scale, mu)),
+                    Quantity(name, value, "m"))
 
 
 CLEAR = 4.0
@@ -353,9 +352,8 @@ def sum_graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     course.curve(steps[2], d.from_axis(at(phi + 1j * total)))
     sums, base = np.asarray(plate.sums.value), cam.exact.positions.s.value
     along = at(law.positions)
-    kept = distinct(law.labels, along.real)
     sides = [(at(law.positions + 1j * step.value), step) for step in reversed(plate.sides)]
-    for k in kept:
+    for k in distinct(law.labels, along.real):
         here = found.position(k)
         for point, step in reversed({complex(np.round(points[k], 6)): step for points, step in sides}.items()):
             here.line(step, complex(along[k]), point, "thin")

@@ -14,7 +14,6 @@ from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas, lettered
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.text_layout import CLEAR, spread
 from tmm_sheets.sheets.player import PlayerStage
 
@@ -150,8 +149,3 @@ def _row(ink: InkIndex, closed: Box, marks: Sequence[tuple[int, float, str]], pa
         if cost >= most:
             return None
     return cost, boxes
-
-
-def lengths(z: Points, centre: complex) -> list[float]:
-    """Lengths along an arc about a centre from the first of some points, with the sign of their direction."""
-    return [float(abs(z[0] - centre) * np.angle((p - centre) / (z[0] - centre))) for p in z]

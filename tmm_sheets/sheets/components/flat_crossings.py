@@ -136,8 +136,8 @@ def _better(project: Project, i: int, among: Collection[int]) -> int | None:
         n = abs(order.index(k) - at)
         return min(n, len(order) - n)
 
-    fit = [k for k in order if k in among and flattest[k] < STEEP and stroke[k] == stroke[i]]
-    return min(fit, key=lambda k: (away(k), flattest[k]), default=None)
+    return min([k for k in order if k in among and flattest[k] < STEEP and stroke[k] == stroke[i]],
+               key=lambda k: (away(k), flattest[k]), default=None)
 
 
 # --- in words ---------------------------------------------------------------------------------------------------------
@@ -220,7 +220,7 @@ _CANNOT = {
 _MEET = ((marked("the lines meet at {angle}°"), marked("the lines meet at less than {angle}°")),
          (marked("at position {worst} the lines meet at {angle}°"),
           marked("at position {worst} the lines meet at less than {angle}°")))
-"""What is said of their angle, at one position and at several; the same of one too small to be told."""
+"""How lines meet, at one position and at the worst of several: at an angle, and at less than can be told."""
 
 
 def said(project: Project, flat: Flat) -> str:
@@ -230,19 +230,15 @@ def said(project: Project, flat: Flat) -> str:
     labels = _labels(project)
     several = len(flat.positions) > 1
     kind, links = _kind(project, flat)
-    if kind == "positions":
-        kind = "line" if flat.step.rule is rules.LINE_LINE else "arcs"
+    kind = kind if kind != "positions" else "line" if flat.step.rule is rules.LINE_LINE else "arcs"
     what = tr(_CANNOT[kind][several + 2 * (flat.mm is not None)]).format(
         at=_listed(project, flat.positions), name=link_marks.indexed(flat.step.name), links="–".join(links),
         mm=fixed(flat.mm or 0.0, 1))
     angle = degrees(flat.angle)
     why = tr(_MEET[several][angle < 0.1]).format(worst=labels[flat.worst], angle=fixed(max(angle, 0.1), 0 if angle >= 10 else 1))
-    if flat.better is None:
-        advice = tr("no position of this stroke is better")
-    else:
-        advice = tr("for the force analysis take position {better} ({mm} mm)") if _analysed(project, flat.worst) else \
-            tr("position {better} is better ({mm} mm)")
-        advice = advice.format(better=labels[flat.better], mm=fixed(flat.better_mm, 1))
+    advice = tr("no position of this stroke is better") if flat.better is None else (
+        tr("for the force analysis take position {better} ({mm} mm)") if _analysed(project, flat.worst) else
+        tr("position {better} is better ({mm} mm)")).format(better=labels[flat.better], mm=fixed(flat.better_mm, 1))
     return f"{what}: {why}; {advice}"
 
 

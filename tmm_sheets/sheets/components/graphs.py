@@ -85,8 +85,8 @@ def heading(canvas: Canvas, box: Box, options: Options, title: str, factor: str,
     canvas.put(name, complex(start, box.y1 - 6.0))
     canvas.text(complex(start + name.width + 8, box.y1 - 6.0), factor, size)
     if under:
-        middle = (options["axis"] + box.x1) / 2
-        canvas.text(complex(middle, box.y1 - 12.5), under, size_for([under], box.x1 - options["axis"] - 4.0, 3.5), "centre")
+        canvas.text(complex((options["axis"] + box.x1) / 2, box.y1 - 12.5), under,
+                    size_for([under], box.x1 - options["axis"] - 4.0, 3.5), "centre")
 
 
 def begin(canvas: Canvas, box: Box, options: Options, heads: tuple[str, ...], low: float, high: float, below: float,
@@ -101,10 +101,11 @@ def begin(canvas: Canvas, box: Box, options: Options, heads: tuple[str, ...], lo
     return g
 
 
-def axes(canvas: Canvas, g: Graph, length: float, low: float, high: float, ordinate: str) -> None:
-    """Angle axis of a length and ordinate axis over a range, mm, with their signs."""
+def axes(canvas: Canvas, g: Graph, length: float, low: float, high: float, ordinate: str, abscissa: str = "") -> None:
+    """Axis of the angle, or another ``abscissa``, of a length and ordinate axis over a range, mm, with their signs."""
     canvas.arrow(g(0j), g(length + OVER), "axis", 3.0)
-    canvas.label(complex(g(length + OVER)) - 5.0, tr("{symbol}, rad").format(symbol="φ_1"), -1j, 3.5, 1.5, leader=False)
+    sign = abscissa or tr("{symbol}, rad").format(symbol="φ_1")
+    canvas.label(complex(g(length + OVER)) - 5.0, sign, -1j, 3.5, 1.5, leader=False)
     canvas.arrow(g(1j * (low - 3 if low else 0)), g(1j * (high + OVER)), "axis", 3.0)
     canvas.text(complex(g(1j * (high + OVER))) - 2.0 - 2.5j, ordinate, 3.5, "right")
 
@@ -247,11 +248,6 @@ class Quantity:
         """The same of the curves alone, without the axis, but for one that is level."""
         return risen(np.concatenate([c.values for c in self.curves])) or self.span
 
-    @property
-    def coarsest(self) -> float:
-        """Largest handy scale factor with which the curves are not below the floor."""
-        return reach("", "", self.extent or 1.0, self.floor).mu
-
 
 Column = tuple[Quantity, ...]
 """Graphs one under another."""
@@ -265,14 +261,20 @@ class GraphPlace(NamedTuple):
     mu: float
 
 
+def _whole(project: Project) -> float:
+    """Length of the axis, in the unit of the abscissae."""
+    return float(project.abscissae(np.array(project.cycle.period)))
+
+
 def angle_axis(project: Project, box: Box) -> tuple[Scale, float]:
-    """Handy scale factor of the angle of the crank over its cycle, and where the axis begins, mm.
+    """Handy scale factor of the abscissae over the cycle, and where the axis begins, mm.
 
     One rule for all graphs, so that positions stand under each other in places of one width.
     """
     room = box.width - LEFT - RIGHT
-    scale = fit("μ_φ", tr("rad/mm"), project.cycle.period, room)
-    return scale, box.x0 + LEFT + (room - scale.mm(project.cycle.period)) / 2
+    symbol, unit = ("μ_φ", tr("rad/mm")) if project.mechanism.drive is None else ("μ_s", tr("m/mm"))
+    scale = fit(symbol, unit, _whole(project), room)
+    return scale, box.x0 + LEFT + (room - scale.mm(_whole(project))) / 2
 
 
 def _shapes(columns: Sequence[Column]) -> list[list[Column]]:
@@ -287,8 +289,7 @@ def _shapes(columns: Sequence[Column]) -> list[list[Column]]:
 
 def _least_width(project: Project) -> float:
     """Width of a graph whose positions are just far enough apart for their numbers, mm."""
-    period = project.cycle.period
-    return LEFT + RIGHT + period / reach("", "", period, PITCH * len(project.cycle.labels)).mu
+    return LEFT + RIGHT + _whole(project) / reach("", "", _whole(project), PITCH * len(project.cycle.labels)).mu
 
 
 def _least_height(project: Project, column: Column) -> float:
@@ -298,7 +299,7 @@ def _least_height(project: Project, column: Column) -> float:
 
 def _chosen(project: Project, q: Quantity) -> float:
     """The scale factor that the project file asks for, or the largest handy one at which the graph is not below its floor."""
-    return project.variant.scales.get(q.key) or q.coarsest
+    return project.variant.scales.get(q.key) or reach("", "", q.extent or 1.0, q.floor).mu
 
 
 def need(project: Project, columns: Sequence[Column]) -> Need:
@@ -368,8 +369,8 @@ def low(project: Project, columns: Sequence[Column], box: Box) -> Iterator[Measu
               if place.quantity.span and place.quantity.key not in project.variant.scales]
     hint = marked("name fewer outputs in diagrams of [cycle]") if len(places) > 3 else marked("number fewer positions")
     for q, _, mu in places:
-        what = Remark(marked("the graph of {quantity}"), {"quantity": re.sub("[_{}]", "", q.letter)})
-        yield Measured(what, q.extent / mu, q.floor, hint)
+        yield Measured(Remark(marked("the graph of {quantity}"), {"quantity": re.sub("[_{}]", "", q.letter)}), q.extent / mu,
+                       q.floor, hint)
 
 
 @dataclass(frozen=True)
@@ -433,16 +434,18 @@ def _graph(project: Project, canvas: Canvas, place: GraphPlace, beside: bool) ->
     scale = (Scale("", 1.0, "") if zero and not asked else
              pick(project, canvas, q.key, f"μ_{q.letter[0]}", per_mm.format(unit=q.unit), least))
     angle, left = angle_axis(project, place.box)
-    length, top, bottom = angle.mm(cycle.period), scale.mm(q.high), scale.mm(q.low)
+    length, top, bottom = angle.mm(_whole(project)), scale.mm(q.high), scale.mm(q.low)
+    places = project.abscissae(cycle.turned)
     o = complex(left, place.box.y0 + BELOW + (place.box.height - ABOVE - BELOW - (top - bottom)) / 2 - bottom)
     at, g = PlanFrame(scale, o, angle), Graph(o)
     frames = [canvas.placed(c.plan, "", o, at.mu) for c in q.curves]
     axis = canvas.tracing("axis", q.curves[0].step, "", frames[0])
     for c, frame in zip(q.curves, frames, strict=True):
-        canvas.tracing("curve", c.step, "", frame, c.symbol).polyline(at(c.turned + 1j * c.values), "curve")
-        for label, foot, end in zip(cycle.labels, at(cycle.turned), at(cycle.turned + 1j * c.at), strict=True):
+        canvas.tracing("curve", c.step, "", frame, c.symbol).polyline(at(project.abscissae(c.turned) + 1j * c.values), "curve")
+        for label, foot, end in zip(cycle.labels, at(places), at(places + 1j * c.at), strict=True):
             canvas.tracing("construction", c.step, label, frame, c.symbol).line(foot, end, "thin")
-    axes(axis, g, length, bottom, top, f"{q.letter}, {q.unit}")
+    axes(axis, g, length, bottom, top, f"{q.letter}, {q.unit}",
+         "" if project.mechanism.drive is None else tr("{symbol}, m").format(symbol="s"))
     # Over the numbers, where these stand on the upper side of an axis with nothing above it.
     canvas.text(o + length + 1j * (top + OVER - (4.0 if top > 6.0 else 1.0)),
                 f"{q.letter} = 0" if zero else str(scale), 3.5, "right")
@@ -452,10 +455,10 @@ def _graph(project: Project, canvas: Canvas, place: GraphPlace, beside: bool) ->
         axis.line(y, y + length, "axis")
         axis.label(y + 0.9 * length, f"{name} = {enough(value, 1, float(np.abs(q.curves[0].values).max()))} {q.unit}", 1j, 3.5, 0.8)
     first, last = q.curves[0].at, len(cycle.ends)  # a swing ends at its last position
-    numbers(axis, g, np.append(angle.mm(cycle.turned), length)[:last], cycle.ends, np.append(first, first[0])[:last])
+    numbers(axis, g, np.append(angle.mm(places), length)[:last], cycle.ends, np.append(first, first[0])[:last])
     for c in q.curves if len(q.curves) > 1 else ():
         size = np.abs(c.values)
         peak, low = int(np.argmax(size)), np.flatnonzero(size < 0.97 * size.max())
         # Middle of the stretch in which it is about as high as it is anywhere.
         k = int(max(low[low < peak], default=-1) + 1 + min(low[low > peak], default=len(size)) - 1) // 2
-        canvas.label(complex(at(c.turned[k] + 1j * c.values[k])), c.symbol, 1j * np.sign(c.values[k]), 3.5, 0.8)
+        canvas.label(complex(at(project.abscissae(c.turned[k]) + 1j * c.values[k])), c.symbol, 1j * np.sign(c.values[k]), 3.5, 0.8)

@@ -143,8 +143,8 @@ class Table:
     def __call__(self, project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
         """Draw it."""
         rows, widths = self.rows(project, canvas), [share * box.width for share in self.shares]
-        title = tr(self.title) if isinstance(self.title, str) else self.title(project)
-        left = canvas.title(box, title, spare=box.height - 11.0 - self.places[-1][1] * len(rows))
+        left = canvas.title(box, tr(self.title) if isinstance(self.title, str) else self.title(project),
+                            spare=box.height - 11.0 - self.places[-1][1] * len(rows))
         row, height = letters_in(left.height / len(rows), widths, rows)
         canvas.table(complex(box.x0, left.y1), widened(widths, rows, height), rows, row, height)
 
@@ -162,10 +162,9 @@ def table(canvas: Canvas, left: Box, rows: list[list[str]], tallest: float = 11.
     high = min(left.height / sum(map(len, parts)), tallest)
     top = left.y1
     for part in parts:
-        columns = len(part[0]) - 1
         width = (left.width - first) / (len(parts[0][0]) - 1)
         height = size_in(high) if max(letter(cell, 3.5).width for line in part for cell in line[1:]) <= width - 1 else 2.5
-        canvas.table(complex(left.x0, top), widened([first, *[width] * columns], part, height), part, high, height)
+        canvas.table(complex(left.x0, top), widened([first, *[width] * (len(part[0]) - 1)], part, height), part, high, height)
         top -= high * len(part)
 
 
@@ -188,16 +187,6 @@ UNDER = 3.0
 """Distance of the last of them from the table, mm."""
 LINES = 3
 """Most lines of a title: below them it is no longer read as one."""
-
-
-def upright_sizes(title: str, rows: Rows, widest: float = inf) -> list[tuple[float, float]]:
-    """Widths and heights that a table with these cells, heads included, can do with, mm, the largest first.
-
-    None is wider than ``widest``; each is at least as wide as the longest word of the title.
-    """
-    word = max(letter(word, 3.5).width for word in title.split(" "))
-    found = [(max(sum(needs(rows, height, gap)), word), row) for row, height, gap in TRIED]
-    return [(width, _head(title, width)[1] + row * len(rows)) for width, row in found if width <= widest]
 
 
 def draw_upright(canvas: Canvas, box: Box, title: str, rows: Rows) -> None:
@@ -228,9 +217,11 @@ class Upright:
     of: Callable[[Project, dict[str, Any]], tuple[str, Rows]]
 
     def sizes(self, project: Project, canvas: Canvas, options: dict[str, Any]) -> Sizes:
-        """Places that it can do with."""
+        """Places that it can do with, the largest first, each at least as wide as the longest word of the title."""
         title, rows = self.of(project, options)
-        return upright_sizes(title, rows, options.get("widest", inf)) if len(rows[0]) > 1 else []
+        word = max(letter(word, 3.5).width for word in title.split(" "))
+        found = [(max(sum(needs(rows, height, gap)), word), row) for row, height, gap in TRIED if len(rows[0]) > 1]
+        return [(width, _head(title, width)[1] + row * len(rows)) for width, row in found if width <= options.get("widest", inf)]
 
     def __call__(self, project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
         """Draw it."""

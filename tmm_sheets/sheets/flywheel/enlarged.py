@@ -1,7 +1,8 @@
-"""Graphs for room that a sheet of the flywheel has left: those of energy enlarged along their ordinates, and the crank's speed.
+"""Graphs for room that a sheet of the flywheel has left: those of energy and inertia enlarged, and the crank's speed.
 
-Where dE is little beside what belongs to it, the links' own energy, or the segment ab, sets the scale factor of the construction.
-What is too low at it to be read is shown again, its tangencies too, at a scale factor of its own. The option ``axis`` of the graph
+Where dE is little beside what belongs to it, the links' own energy, or the segment ab, sets the scale factor of the construction;
+where J hardly varies, that of the links that always turn. What is too low or too narrow at it to be read is shown again, its
+tangencies too, at a scale factor of its own: dE from the axis on, J from where it begins. The option ``axis`` of the graph
 of the angular velocity is the x of the ordinate axis of the other graphs, mm: beneath them its positions stand under theirs.
 """
 
@@ -9,24 +10,24 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import floor, log10
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from tmm_sheets.construction.scale import MAIN, fit
+from tmm_sheets.construction.scale import MAIN, Scale, fit
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import number
+from tmm_sheets.numbers import is_zero, number
 from tmm_sheets.sheets.components import graphs
 from tmm_sheets.sheets.flywheel import flywheel, mertsalov
 from tmm_sheets.sheets.player import stage, together
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.flywheel.flywheel import Flywheel
+    from tmm_sheets.methods.flywheel.wheel_methods import Wittenbauer
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.views import Arrangement
 
@@ -39,13 +40,16 @@ SHARES = (1.0, 0.75, 0.6, 0.45)
 """Shares of the abscissae's own scale that an enlarged graph can do with."""
 
 
-def _sizes(fw: Flywheel, across: float) -> tuple[tuple[float, float], ...]:
-    """Sizes of the enlarged graph of dE, mm; none where that of the construction is high enough."""
-    span = float(np.ptp(np.append(fw.energy_curve(fw.samples), 0.0)))
-    if span >= MAIN or not span:
-        return ()
-    high = span * fw.scales.energy.mu / fw.enlarged(fw.scales.energy, span).mu
-    return tuple((share * across + LEFT + RIGHT, high + TITLE + ABOVE + BELOW) for share in SHARES)
+def _across(x: Scale, span: float, box: Box) -> Scale:
+    """The scale factor of abscissae, or a coarser one with which their ``span`` finds room."""
+    room = box.width - LEFT - RIGHT
+    return x if x.mm(span) <= room + 1e-6 else fit(x.symbol, x.unit, span, room)
+
+
+def _begun(canvas: Canvas, box: Box, title: str, scales: tuple[Scale, Scale], high: float) -> tuple[Box, graphs.Graph]:
+    """The place under the title of a graph, and the axes there over which it is so high, mm; ``scales`` are those across and up."""
+    left = canvas.title(box, title, f"{scales[1]}, {scales[0]}")
+    return left, graphs.Graph(complex(left.x0 + LEFT, left.y1 - ABOVE - high))
 
 
 def apart(project: Project, plan: Arrangement) -> Arrangement:
@@ -62,9 +66,16 @@ def apart(project: Project, plan: Arrangement) -> Arrangement:
 
 
 def change_sizes(project: Project, canvas: Canvas, options: Options) -> tuple[tuple[float, float], ...]:
-    """Sizes of the graph of dE by Mertsalov's procedure, which shares its axis with the energies of the links, mm."""
+    """Sizes of the graph of dE by Mertsalov's procedure, which shares its axis with the energies of the links, mm.
+
+    None where that of the construction is high enough.
+    """
     fw = project.flywheel
-    return _sizes(fw, fw.scales.angle.mm(fw.reduced.period)) if fw.method == "mertsalov" else ()
+    if fw.method != "mertsalov":
+        return ()
+    span, across = float(np.ptp(np.append(fw.energy_curve(fw.samples), 0.0))), fw.scales.angle.mm(fw.reduced.period)
+    high = span * fw.scales.energy.mu / fw.enlarged(fw.scales.energy, span).mu if 0 < span < MAIN else 0.0
+    return tuple((share * across + LEFT + RIGHT, high + TITLE + ABOVE + BELOW) for share in SHARES) if high else ()
 
 
 def change(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
@@ -72,52 +83,65 @@ def change(project: Project, canvas: Canvas, box: Box, options: Options) -> None
     fw = mertsalov.procedure(project)
     name = tr(options.get("energies", mertsalov.ENERGIES)[0])
     curve = fw.energy_curve(fw.samples)
-    y, x = fw.enlarged(fw.scales.energy, float(np.ptp(np.append(curve, 0.0)))), fw.scales.angle
-    length = x.mm(fw.reduced.period)
-    if length > box.width - LEFT - RIGHT + 1e-6:
-        x = fit(x.symbol, x.unit, fw.reduced.period, box.width - LEFT - RIGHT)
-    times = fw.scales.energy.mu / y.mu
-    left = canvas.title(box, tr("Graph of {change}(φ_1), enlarged").format(change=name), f"{y}, {x}")
-    canvas.of = fw.total_plan.name
+    y, x = fw.enlarged(fw.scales.energy, float(np.ptp(np.append(curve, 0.0)))), _across(fw.scales.angle, fw.reduced.period, box)
+    times, narrower = fw.scales.energy.mu / y.mu, fw.scales.angle.mu / x.mu
     low, high = min(0.0, times * float(curve.min())), max(0.0, times * float(curve.max()))
-    g = graphs.Graph(complex(left.x0 + LEFT, left.y1 - ABOVE - high))
-    narrower = fw.scales.angle.mu / x.mu
+    _, g = _begun(canvas, box, tr("Graph of {change}(φ_1), enlarged").format(change=name), (x, y), high)
+    canvas.of = fw.total_plan.name
     of = stage(canvas, fw.total_plan, None, g.place(1 / narrower, 1 / times))
     of.curve("points", g(x.mm(fw.samples) + 1j * times * curve))
     for k, p in enumerate(fw.total_plan["points"].value):
         at = narrower * p.real
         of.position(k).line("points", g(at), g(at + 1j * times * p.imag), "thin")
-    ordinate = tr("{quantity}, J").format(quantity=name)
-    flywheel.axes(fw, of, "points", g, (low, high), ordinate, fw.total_plan["points"].value.imag, x)
+    flywheel.axes(fw, of, "points", g, (low, high), tr("{quantity}, J").format(quantity=name),
+                  fw.total_plan["points"].value.imag, x)
+
+
+def _larger(fw: Wittenbauer) -> tuple[Scale, Scale, float]:
+    """Scale factors of the enlarged energy-mass diagram across and up, and the inertia at which its axis begins.
+
+    Both its own scale factors where it is large enough.
+    """
+    curve, x, y = fw.energy_mass_curve(fw.samples), fw.scales.inertia, fw.scales.energy
+    high, wide, first = float(np.ptp(np.append(curve.imag, 0.0))), float(np.ptp(curve.real)), 0.0
+    if 0 < high < MAIN:
+        y = fw.enlarged(y, high)
+    if wide < MAIN and not is_zero(wide, float(curve.real.max())):
+        x = fw.enlarged(x, wide)
+        first = 10 * x.mu * floor(fw.scales.inertia.real(float(curve.real.min())) / (10 * x.mu))
+    return x, y, first
 
 
 def energy_mass_sizes(project: Project, canvas: Canvas, options: Options) -> tuple[tuple[float, float], ...]:
-    """Sizes of the energy-mass diagram beside which the segment ab is long, mm."""
+    """Sizes of the energy-mass diagram beside which the segment ab is long or the inertia large, mm; none where neither is."""
     fw = project.flywheel
     if fw.method != "wittenbauer":
         return ()
-    return _sizes(fw, float(fw.scales.inertia.mm(fw.inertia(fw.samples)).max()))
+    x, y, first = _larger(cast("Wittenbauer", fw))
+    if (x, y) == (fw.scales.inertia, fw.scales.energy):
+        return ()
+    across = x.mm(float(fw.inertia(fw.samples).max()) - first)
+    high = y.mm(fw.scales.energy.real(float(np.ptp(np.append(fw.energy_curve(fw.samples), 0.0)))))
+    return tuple((share * across + LEFT + RIGHT, high + TITLE + ABOVE + BELOW) for share in SHARES)
 
 
 def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """The curve with its points and the tangents where they touch it; what they cut off is measured on the diagram itself."""
     fw = flywheel.with_tangents(project)
-    plan, curve = fw.energy_mass_plan, fw.energy_mass_curve(fw.samples)
-    y = fw.enlarged(fw.scales.energy, float(np.ptp(np.append(curve.imag, 0.0))))
-    x, widest = fw.scales.inertia, float(fw.inertia(fw.samples).max())
-    if x.mm(widest) > box.width - LEFT - RIGHT + 1e-6:
-        x = fit(x.symbol, x.unit, widest, box.width - LEFT - RIGHT)
+    plan, curve, (x, y, first) = fw.energy_mass_plan, fw.energy_mass_curve(fw.samples), _larger(fw)
+    widest = float(fw.inertia(fw.samples).max()) - first
+    x = _across(x, widest, box)
     times, narrower = fw.scales.energy.mu / y.mu, fw.scales.inertia.mu / x.mu
-    left = canvas.title(box, tr("Energy-mass diagram, enlarged"), f"{y}, {x}")
-    canvas.of = plan.name
 
     def stretched(z: Points) -> Points:
         return narrower * np.real(z) + 1j * times * np.imag(z)
 
     low, high = min(0.0, times * float(curve.imag.min())), max(0.0, times * float(curve.imag.max()))
-    g = graphs.Graph(complex(left.x0 + LEFT, left.y1 - ABOVE - high))
-    of = stage(canvas, plan, None, g.place(1 / narrower, 1 / times))
-    of.curve("points", g(stretched(curve)))
+    left, g = _begun(canvas, box, tr("Energy-mass diagram, enlarged"), (x, y), high)
+    canvas.of = plan.name
+    whole = graphs.Graph(g.origin - x.mm(first))
+    of = stage(canvas, plan, None, whole.place(1 / narrower, 1 / times))
+    of.curve("points", whole(stretched(curve)))
     room = Box(g.origin.real, g.origin.imag + low - BELOW, left.x1, g.origin.imag + high + ABOVE)
     for name, end in (("max", "a"), ("min", "b")):
         u = complex(stretched(plan[f"t_{name}"].value))
@@ -136,6 +160,8 @@ def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) ->
     pen.arrow(g(0j), g(reach), "axis", 3.0)
     pen.arrow(g(1j * (low - 3.0 if low else 0.0)), g(1j * (high + graphs.OVER)), "axis", 3.0)
     canvas.text(complex(g(1j * (high + graphs.OVER))) - 2.0 - 2.5j, tr("ΔE, J"), 3.5, "right")
+    if first:
+        pen.label(complex(g(0j)), number(first), -1 + 0j, 3.5, 1.5, leader=False)
     sign = tr("J^red, kg·m^2")
     pen.label(g(reach - letter(sign, 3.5).width / 2 - 2.0), sign, -1j, 3.5, 1.5, leader=False)
 
@@ -165,14 +191,10 @@ def graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
                           tell("leave the view crank_speed.graph out"))
     plan, mean = fw.speed_plan, fw.reduced.omega1
     highest, lowest = (float(plan[f"ω_{name}"].value) for name in ("max", "min"))
-    x, wide = fw.scales.angle, box.width - LEFT - RIGHT
-    if x.mm(fw.reduced.period) > wide + 1e-6:
-        x = fit(x.symbol, x.unit, fw.reduced.period, wide)
-    room = box.height - TITLE - BELOW - ABOVE
-    y = fit("μ_ω", tr("s^{−1}/mm"), highest - lowest, room)
-    left = canvas.title(box, tr("Graph of the angular velocity ω_1(φ_1)"), f"{y}, {x}")
+    x = _across(fw.scales.angle, fw.reduced.period, box)
+    y = fit("μ_ω", tr("s^{−1}/mm"), highest - lowest, box.height - TITLE - BELOW - ABOVE)
     high, low = y.mm(highest - mean), y.mm(lowest - mean)
-    g = graphs.Graph(complex(left.x0 + LEFT, left.y1 - ABOVE - high))
+    _, g = _begun(canvas, box, tr("Graph of the angular velocity ω_1(φ_1)"), (x, y), high)
     # The axis stands at the mean: the zero of the angular velocities lies far below it.
     of = stage(canvas, plan, None, graphs.Graph(g.origin - 1j * y.mm(mean)).place(x.mu, y.mu))
     length = x.mm(fw.reduced.period)

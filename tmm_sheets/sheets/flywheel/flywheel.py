@@ -67,8 +67,7 @@ def column(project: Project, canvas: Canvas, box: Box, options: Options) -> None
 
 def _of_column(fw: Flywheel) -> tuple[Stacked, ...]:
     lines = [line for name in fw.reduced.forces_at(fw.samples[:1]) for line in _acting(fw, name)]
-    forces = np.concatenate([np.zeros(1), *(line.imag for line in lines)])
-    return (force_graph, float(np.ptp(forces)), _BELOW), *of_moments(fw)
+    return (force_graph, float(np.ptp(np.concatenate([np.zeros(1), *(line.imag for line in lines)]))), _BELOW), *of_moments(fw)
 
 
 def apart(project: Project, plan: Arrangement) -> Arrangement:
@@ -97,8 +96,8 @@ def apart(project: Project, plan: Arrangement) -> Arrangement:
             right, left = abs(box.x1 - mass.box.x1) < GAP, box.x0 > mass.box.x1 - GAP
             box = box._replace(x0=box.x0 - free * left, x1=box.x1 - free * right)
         repeated = {"energy": places[lower.draw]} | ({"inertia": mass.box._replace(x1=mass.box.x1 - free)} if mass else {})
-        own = {name: [*at] for name, at in repeated.items() if name in view.options}
-        return replace(view, box=box, options={**view.options, **own})
+        return replace(view, box=box,
+                       options={**view.options, **{name: [*at] for name, at in repeated.items() if name in view.options}})
 
     return replace(plan, views=tuple(map(placed, plan.views)))
 
@@ -173,8 +172,7 @@ def force_graph(project: Project, canvas: Canvas, box: Box, options: Options) ->
         if top and k:
             here, name = max(((graphs.one(values), name) for name, values in r.forces_at(r.phi[k]).items()),
                              key=lambda of: (abs(of[0]), of[1]))
-            at = of.position(k % len(r.labels))
-            at.line(steps[name], g(x), g(x + 1j * s.force.mm(here)), "thin")
+            of.position(k % len(r.labels)).line(steps[name], g(x), g(x + 1j * s.force.mm(here)), "thin")
 
 
 def _acting(fw: Flywheel, name: str) -> list[Points]:
@@ -200,8 +198,7 @@ def moments(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
     varying, constant = indices(fw)
     # Of very many intervals (a digitised diagram) one between any two numbers stands for all.
     drawn = [n for n in fw.intervals if len(fw.intervals) <= CROWD * len(fw.labels) or n[-1:] not in ascii_lowercase]
-    every = len(drawn) == len(fw.intervals)
-    factors = tr("{moment}, {angle}, H = {pole} mm") if every else \
+    factors = tr("{moment}, {angle}, H = {pole} mm") if len(drawn) == len(fw.intervals) else \
         tr("{moment}, {angle}, H = {pole} mm; {shown} of {count} rays are shown")
     line = _moment_curve(fw)
     level = s.moment.mm(fw.M_constant)
@@ -232,8 +229,8 @@ def moments(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
     peak = int(np.argmax(size))
     falling = line[peak + int(np.argmax(size[peak:] < 0.6 * size[peak]))]
     canvas.label(g(falling), tr("M_{index}^{{red}}").format(index=varying), 1 - 1j if falling.imag < 0 else 1 + 1j, height=5)
-    beside = _clear_of(line, level, length)
-    canvas.label(g(beside), tr("M_{index}^{{red}}").format(index=constant), -1j if level > 0 else 1j, height=5)
+    canvas.label(g(_clear_of(line, level, length)), tr("M_{index}^{{red}}").format(index=constant), -1j if level > 0 else 1j,
+                 height=5)
 
 
 def _clear_of(line: Points, level: float, length: float) -> complex:
@@ -356,8 +353,7 @@ def total_work(project: Project, canvas: Canvas, box: Box, options: Options) -> 
     graphs.heading(canvas, box, options, tr("Graph of the total work A_Σ(φ_1) = ΔE(φ_1)"), f"{scale}",
                    _enlarged(ratio) if abs(ratio - 1) > 1e-9 else "")
     canvas.of = fw.total_plan.name
-    larger = s.energy.mu / scale.mu
-    ordinates = larger * fw.energy_curve(fw.samples)
+    ordinates = (s.energy.mu / scale.mu) * fw.energy_curve(fw.samples)
     low, high = min(0.0, float(ordinates.min())), max(0.0, float(ordinates.max()))
     g = _energy_graph(fw, box, options) if scale is s.energy else \
         graphs.Graph(complex(options["axis"], box.y1 - graphs.HEAD - graphs.OVER - high - 4.0))
@@ -560,9 +556,9 @@ def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
         canvas.dimension(right - 1j * r, right + 1j * r, -18.0, f"Ø{fixed(outer, 0)}", factor=1 / k)
     canvas.dimension(side - half - 1j * bore, side - half + 1j * bore, 7.0, f"Ø{fixed(2 * bore / k, 0)}", factor=1 / k)
     width = f"B = {fixed(b, 0)}"
-    inside = letter(width, 3.5).width <= 2 * half - 1
     foot = side - half - 1j * r
-    canvas.dimension(foot, foot + 2 * half, -9.0, width, factor=1 / k, apart=None if inside else (foot - 7.0 - 9.0j, -1 + 0j))
+    canvas.dimension(foot, foot + 2 * half, -9.0, width, factor=1 / k,
+                     apart=None if (letter(width, 3.5).width <= 2 * half - 1) else (foot - 7.0 - 9.0j, -1 + 0j))
     if rim:
         top = side - half + 1j * r
         canvas.dimension(top - 1j * h * k, top, 7.0, f"H = {fixed(h, 0)}", factor=1 / k, apart=(top - 7.0 - 0.5j * h * k, -1 + 0j))
@@ -597,14 +593,13 @@ def disagreement(fw: Flywheel) -> list[str]:
 def inertia_table(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Table of the terms of the reduced moment of inertia at the positions."""
     fw: Flywheel = project.flywheel
-    rows = [[tr("Position"), *fw.labels]]
-    for name, values in fw.reduced.inertia_terms.items():
-        # A square over an index; terms without a unit are doubled energies. The position that closes the cycle may be left out.
-        caption = name.replace("²", "^2")
-        quantity = caption if "," in caption else tr("{quantity}, J").format(quantity=caption)
-        rows.append(graphs.row(quantity, np.resize(values, len(fw.labels))))
-    rows.append(graphs.row(tr("J^red, kg·m^2"), fw.J_reduced))
-    listed.table(canvas, canvas.title(box.inset(0, 0, 0, 2), tr("Reduced moment of inertia")), rows)
+    # A square over an index; terms without a unit are doubled energies. The position that closes the cycle may be left out.
+    terms = {name.replace("²", "^2"): values for name, values in fw.reduced.inertia_terms.items()}
+    listed.table(canvas, canvas.title(box.inset(0, 0, 0, 2), tr("Reduced moment of inertia")), [
+        [tr("Position"), *fw.labels],
+        *(graphs.row(name if "," in name else tr("{quantity}, J").format(quantity=name), np.resize(values, len(fw.labels)))
+          for name, values in terms.items()),
+        graphs.row(tr("J^red, kg·m^2"), fw.J_reduced)])
 
 
 def _works(project: Project, options: Options) -> tuple[str, list[list[str]]]:
@@ -637,8 +632,10 @@ def results(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
     drawn = tr("|ab| = {length} mm") if fw.ab_mm >= 0 else tr("ab = {length} mm (a below b)")
     tangent = tr("tan ψ_{name} = μ_J/(2μ_E)·ω_1^2(1 {sign} δ/2)^2 = {slope};  ψ_{name} = {angle}°")
     digits = decimals_for([slope["max"] - slope["min"]], 4)
-    rows = [
-        _givens(fw),
+    listed.draw_lines(canvas, box, tr("Flywheel design"), [
+        (tr("ω_1 = {omega} s^{{−1}};  J_f = {J} kg·m^2 (given)") if fw.given else
+         tr("ω_1 = {omega} s^{{−1}};  δ = {delta}")).format(
+            omega=fixed(fw.reduced.omega1, 3), delta=number(fw.unevenness), J=number(fw.J_flywheel)),
         *(tangent.format(name=name, sign=sign, slope=fixed(slope[name], digits), angle=fixed(degrees(a), 2))
           for name, sign, a in zip(("max", "min"), "+−", psi, strict=True)),
         drawn.format(length=_of_segment(fw)),
@@ -649,14 +646,7 @@ def results(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
         *power(fw),
         *frictionless(project),
         *sizes(fw),
-    ]
-    listed.draw_lines(canvas, box, tr("Flywheel design"), rows)
-
-
-def _givens(fw: Flywheel) -> str:
-    """Angular velocity, what is given of δ and of the flywheel."""
-    said = tr("ω_1 = {omega} s^{{−1}};  J_f = {J} kg·m^2 (given)") if fw.given else tr("ω_1 = {omega} s^{{−1}};  δ = {delta}")
-    return said.format(omega=fixed(fw.reduced.omega1, 3), delta=number(fw.unevenness), J=number(fw.J_flywheel))
+    ])
 
 
 def found(fw: Flywheel) -> list[str]:
@@ -672,9 +662,8 @@ def found(fw: Flywheel) -> list[str]:
 
 def power(fw: Flywheel) -> list[str]:
     """Mean power by the work of the cycle, where the efficiency of what lies between motor and crank is given."""
-    if fw.data.efficiency is None:
-        return []
-    return [";  ".join(of_step(fw.power_plan[name], own=constant(fw)) for name in ("P", "P_дв"))]
+    return [] if fw.data.efficiency is None else \
+        [";  ".join(of_step(fw.power_plan[name], own=constant(fw)) for name in ("P", "P_дв"))]
 
 
 def motor(fw: Flywheel) -> list[str]:
@@ -696,16 +685,14 @@ def constant(fw: Flywheel) -> dict[int, Quantity]:
 
 def frictionless(project: Project) -> list[str]:
     """That the moments of the flywheel leave out friction, where the force analysis has it."""
-    if project.variant.friction is None:
-        return []
-    return [tr("M_{index} is found without friction in the pairs").format(index=indices(project.flywheel)[1])]
+    return [] if project.variant.friction is None else \
+        [tr("M_{index} is found without friction in the pairs").format(index=indices(project.flywheel)[1])]
 
 
 def _alike(fw: Flywheel) -> list[str]:
     """What is asked by the drawn construction and in the limit with the same decimals."""
-    if fw.given:
-        return graphs.column([fw.unevenness, float(fw.limit_plan["δ∞"].value)], 4)
-    return graphs.column([fw.J_flywheel, fw.J_flywheel_converged], 4)
+    return graphs.column([fw.unevenness, float(fw.limit_plan["δ∞"].value)], 4) if fw.given else \
+        graphs.column([fw.J_flywheel, fw.J_flywheel_converged], 4)
 
 
 def converged(fw: Flywheel) -> str:
@@ -773,8 +760,7 @@ def indices(fw: Flywheel) -> tuple[str, str]:
 
 def _stretches(fw: Flywheel) -> list[tuple[float, float]]:
     """Stretches of the cycle between the jumps of the force."""
-    ends = [0.0, *(b for b in fw.reduced.breaks if 0 < b < fw.reduced.period), fw.reduced.period]
-    return list(pairwise(ends))
+    return list(pairwise([0.0, *(b for b in fw.reduced.breaks if 0 < b < fw.reduced.period), fw.reduced.period]))
 
 
 def _inside(fw: Flywheel, a: float, b: float) -> Floats:
@@ -798,9 +784,8 @@ def _energy_graph(fw: Wittenbauer, box: Box, options: Options) -> graphs.Graph:
 
 
 def _inertia_graph(fw: Flywheel, box: Box, options: Options) -> graphs.Graph:
-    length = fw.inertia_angle.mm(fw.inertia_turn)
-    spare = box.height - 16 - length - graphs.OVER
-    return graphs.Graph(complex(options["axis"], box.y1 - 16 - max(spare / 2, 3.0)), -1j)
+    return graphs.Graph(complex(options["axis"],
+        box.y1 - 16 - max((box.height - 16 - fw.inertia_angle.mm(fw.inertia_turn) - graphs.OVER) / 2, 3.0)), -1j)
 
 
 AB = 14.0
@@ -811,9 +796,7 @@ BESIDE = 4.0
 def _spoke(canvas: Canvas, centre: complex, u: complex, inner: float, outer: float, half: float) -> None:
     for sign in (1, -1):
         a, b = sign * half, sign * 0.75 * half
-        p = complex((inner**2 - a**2) ** 0.5, a)
-        q = complex((outer**2 - b**2) ** 0.5, b)
-        canvas.line(centre + u * p, centre + u * q, "main")
+        canvas.line(centre + u * complex((inner**2 - a**2) ** 0.5, a), centre + u * complex((outer**2 - b**2) ** 0.5, b), "main")
 
 
 @in_role("symbol")

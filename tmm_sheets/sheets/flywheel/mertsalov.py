@@ -49,8 +49,8 @@ LEGEND = 6.0
 
 def procedure(project: Project) -> Mertsalov:
     """The flywheel by the crank's energy; CannotBuild for one by another method."""
-    hint = tell("take the arrangement flywheel among the project's sheets")
-    return cast("Mertsalov", flywheel.by_method(project, "mertsalov", hint))
+    return cast("Mertsalov",
+                flywheel.by_method(project, "mertsalov", tell("take the arrangement flywheel among the project's sheets")))
 
 
 def _signs(options: Options) -> tuple[str, str, str, str]:
@@ -97,8 +97,8 @@ def inertia(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
         beside = options["axis"] + 4.0  # the sign of the axis may reach up to it
         canvas.text(complex((beside + box.x1) / 2, box.y1 - 13.0), legend, size_for([legend], box.x1 - beside, 3.5), "centre")
     flywheel.uprights(of, "points")
-    ordinate = tr("{quantity}, kg·m^2").format(quantity=sign)
-    flywheel.axes(fw, of, "points", g, (0.0, float(curve.max())), ordinate, np.ones(len(fw.labels)))
+    flywheel.axes(fw, of, "points", g, (0.0, float(curve.max())), tr("{quantity}, kg·m^2").format(quantity=sign),
+                  np.ones(len(fw.labels)))
     k = int(np.argmax(curve))
     canvas.label(g(x[k] + 1j * curve[k]), sign, 1 + 1j, height=5)
     _tangent(fw, of.position(project.force_index), box, graphs.HEAD + (LEGEND if len(parts) > NAMED else 0.0))
@@ -138,7 +138,7 @@ def energies(project: Project, canvas: Canvas, box: Box, options: Options) -> No
     fw = procedure(project)
     s, plan = fw.scales, fw.energy_plan
     change, second, first, _ = _signs(options)
-    omega = _omega_scale(fw)
+    omega = Scale(fw.speed_scale.symbol, float(f"{fw.speed_scale.mu:.4g}"), fw.speed_scale.unit)
     ratio = s.work.mu / s.energy.mu
     against = "" if abs(ratio - 1) < 1e-9 else f" (μ_A/{number(ratio)})" if ratio > 1 else f" ({number(1 / ratio)}μ_A)"
     title = tr("Graphs of {change}(φ_1), {first}(φ_1), ω_1(φ_1)").format(change=change, first=first)
@@ -155,8 +155,8 @@ def energies(project: Project, canvas: Canvas, box: Box, options: Options) -> No
     for p, top, label in zip(points, upper, fw.labels, strict=True):
         below, above = (g(complex(p.real, f(0.0, p.imag, top))) for f in (min, max))
         canvas.tracing("construction", plan["T_I"].path, label).line(below, above, "thin")
-    ordinate = tr("{quantity}, J").format(quantity=f"{change}, {first}")
-    flywheel.axes(fw, of, "points", g, (low, high), ordinate, np.where(upper > 1e-6, 1.0, -1.0))
+    flywheel.axes(fw, of, "points", g, (low, high), tr("{quantity}, J").format(quantity=f"{change}, {first}"),
+                  np.where(upper > 1e-6, 1.0, -1.0))
     for name, end in (("max", "a"), ("min", "b")):
         # The tangent runs on beyond the point where it touches.
         of.line(f"M_{name}", of.at(end), of.at(f"M_{name}") + 10)
@@ -172,13 +172,7 @@ def energies(project: Project, canvas: Canvas, box: Box, options: Options) -> No
     canvas.label(g(x[k] + 1j * own[k]), f"{first}, ω_1", 1 - 1j, height=5)
     k = int(np.argmax(fw.energy_plan["T_II"].value[1:])) + 1
     if fw.energy_plan["T_II"].value[k]:
-        middle = complex(points[k].real, (points[k].imag + upper[k]) / 2)
-        canvas.label(g(middle), second, 1, height=3.5)
-
-
-def _omega_scale(fw: Mertsalov) -> Scale:
-    mu = fw.speed_scale
-    return Scale(mu.symbol, float(f"{mu.mu:.4g}"), mu.unit)
+        canvas.label(g(complex(points[k].real, (points[k].imag + upper[k]) / 2)), second, 1, height=3.5)
 
 
 def _found(project: Project, options: Options) -> tuple[str, list[list[str]]]:
@@ -211,8 +205,8 @@ def results(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
     names = {"M_пр": tr("M_{index}^{{red}}").format(index=varying), "J_II": sign, "dJ/dφ": f"d{sign}/dφ"}
     own = flywheel.constant(fw)
     for step in plan:  # what is nothing beside the other positions is nothing
-        value = clean(float(step.at(k)), float(np.abs(step.value).max()))
-        own[id(step)] = Quantity(names.get(step.name, letters_of(step.symbol or step.name)), value, step.rule.unit)
+        own[id(step)] = Quantity(names.get(step.name, letters_of(step.symbol or step.name)),
+                                 clean(float(step.at(k)), float(np.abs(step.value).max())), step.rule.unit)
     moment, inertia, slope, epsilon = (of_step(plan[name], k, own=own) for name in ("M", "J", "dJ/dφ", "ε1"))
     position = f"{tr('Position {label}').format(label=fw.labels[k])}:  ψ = {fixed(degrees(float(plan['ψ'].value[k])), 2)}°"
     listed.draw_lines(canvas, box, tr("Flywheel design by Mertsalov's method"), [
@@ -223,9 +217,8 @@ def results(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
 
 def _givens(fw: Mertsalov) -> str:
     """Mean angular velocity, δ or the flywheel that is given, constant moment."""
-    d = fw.data
     said = tr("ω_{{1m}} = {omega} rad/s;  J_f = {flywheel} kg·m^2 (given);  M_{index} = {moment} N·m") if fw.given else \
-        tr("ω_{{1m}} = {omega} rad/s;  δ = {delta} (taken);  M_{index} = {moment} N·m") if d.accepted else \
+        tr("ω_{{1m}} = {omega} rad/s;  δ = {delta} (taken);  M_{index} = {moment} N·m") if fw.data.accepted else \
         tr("ω_{{1m}} = {omega} rad/s;  δ = {delta};  M_{index} = {moment} N·m")
     return said.format(omega=fixed(fw.reduced.omega1, 4), delta=number(fw.unevenness), flywheel=number(fw.J_flywheel),
                        index=flywheel.indices(fw)[1], moment=flywheel.constant_moment(fw))
@@ -268,7 +261,6 @@ def comparison(project: Project, canvas: Canvas, box: Box, options: Options) -> 
     if fw.given:
         return
     _, _, _, sign = _signs(options)
-    apart = float(fw.comparison_plan["ΔJ"].value)
     text = tr("n → ∞: difference {apart} kg·m^2; theory: ({sign}(φ_{{max}}) + {sign}(φ_{{min}}))/2 = {excess} kg·m^2").format(
-        apart=enough(apart, 3, fw.J_first), sign=sign, excess=enough(fw.excess, 3, fw.J_first))
+        apart=enough(float(fw.comparison_plan["ΔJ"].value), 3, fw.J_first), sign=sign, excess=enough(fw.excess, 3, fw.J_first))
     canvas.text(complex(box.x0, place.y0 - 6.5), text, size_for([text], box.width, 3.5))

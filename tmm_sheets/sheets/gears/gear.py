@@ -20,7 +20,7 @@ from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.components.listed import Form, Formulas
 from tmm_sheets.sheets.gears import gear_picture
-from tmm_sheets.sheets.gears.gear_marks import Window, draw_radii, gap, ruled_table, sentence
+from tmm_sheets.sheets.gears.gear_marks import Radii, Window, gap, ruled_table, sentence
 from tmm_sheets.sheets.player import PlanFrame, PlayerStage, placed, proportion, ratio, stage, standard
 from tmm_sheets.words import marked, tr
 
@@ -51,7 +51,8 @@ def engagement(project: Project, canvas: Canvas, box: Box, options: dict[str, An
         picture.dimensions(wheel)
     picture.dimension_of_centres()
     picture.pole_letter()
-    draw_radii(picture)
+    for wheel in picture.gear.wheels:  # when all else is on the picture
+        Radii(picture, wheel).draw()
 
 
 def mesh(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -74,10 +75,9 @@ class _Detail:
 
     def __init__(self, gear: GearPair, canvas: Canvas, box: Box) -> None:
         self.gear, self.canvas = gear, canvas
-        margin = MESH[0]
         mu = mesh_scale(gear, box.width, box.height)
         inner = canvas.title(box, tr("Meshing zone"), ratio(mu))
-        place = Box(inner.x0, inner.y0, inner.x1 - margin, inner.y1)
+        place = Box(inner.x0, inner.y0, inner.x1 - MESH[0], inner.y1)
         self.pole = place.centre
         tall = mesh_height(gear) / 2 / mu.mu + 8
         low, high = self.pole.imag - tall, self.pole.imag + tall
@@ -117,8 +117,7 @@ class _Detail:
         pen.line(fillet, touch, "thin")
         pen.arrow_head(touch, (touch - fillet) / abs(touch - fillet), 2.5)
         c.label(fillet, text, away=fillet - self.pole, gap=1.5, dimension=len(c.dimensions))
-        factor = 1e3 * self.at.scale.mu
-        c.dimensions.append(Dimension("radius", first, len(c.marks), fillet, touch, touch, text, fillet, factor))
+        c.dimensions.append(Dimension("radius", first, len(c.marks), fillet, touch, touch, text, fillet, 1e3 * self.at.scale.mu))
 
     def gaps(self, c: Canvas) -> None:
         """Radial clearances and the distance between the pitch circles, on the line of centres."""
@@ -156,11 +155,10 @@ def sliding(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     left = (box.x0 + box.x1 - whole) / 2
     # rounded: where letters stand must not hang on the last digit
     y1, y2 = np.round(plan["yV1"].value, 9), np.round(plan["yV2"].value, 9)
-    highest = float(max(y1.max(), y2.max()))
     share = _ways(gear, plan) / scale.mu
     pole = left + (one.t_pole if way > 0 else gear.beyond_pole) / scale.mu
     xs = np.round(pole + way * share, 9)
-    axis = upper.y1 - highest - 8
+    axis = upper.y1 - float(max(y1.max(), y2.max())) - 8
     s = _along(canvas, gear, plan, complex(pole, axis), scale, way)
     _axis_line(s, gear, complex(left, axis), whole, pole - left, scale, way)
     ordinate = float(y1[np.argmin(np.abs(share))])
@@ -197,8 +195,7 @@ def sliding(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
         s.position(k).line("K", complex(x, axis + max(y1[k], y2[k])), complex(x, axis - 5), "construction", "axis")
         t.position(k).line("K", complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction", "axis")
         canvas.label(complex(x, zero), plan.labels[k], away=1 - 1j, height=2.5, gap=0.6, leader=False)
-    said = tr("{length} mm").format(length=number(ordinate))
-    canvas.label(complex(pole, axis + ordinate), said, away=1 - 0.2j, height=3.5)
+    canvas.label(complex(pole, axis + ordinate), tr("{length} mm").format(length=number(ordinate)), away=1 - 0.2j, height=3.5)
 
 
 def _ways(gear: GearPair, plan: Plan) -> Any:
@@ -240,8 +237,8 @@ def _theta(s: PlayerStage, gear: GearPair, lowest: float, way: int) -> None:
         k = int(np.argmax(y >= lowest))
         points = along[y >= lowest] + 1j * y[y >= lowest]
         if k and np.isfinite(y[k - 1]):
-            t = (lowest - y[k]) / (y[k - 1] - y[k])
-            points = np.insert(points, 0, along[k] + t * (along[k - 1] - along[k]) + 1j * lowest)
+            points = np.insert(points, 0,
+                               along[k] + ((lowest - y[k]) / (y[k - 1] - y[k])) * (along[k - 1] - along[k]) + 1j * lowest)
         s.curve(f"theta{i}", s.frame(points[::onward]))
         s.canvas.label(complex(s.frame(points[0].real + 0.6j * points[0].imag)), f"θ_{i}", away=way * onward, height=5, gap=3)
 
@@ -262,12 +259,11 @@ def sliding_table_sizes(project: Project, canvas: Canvas, options: dict[str, Any
 def sliding_table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Ordinates of the speeds and specific sliding at the divisions of N1N2."""
     plan = project.gear.sliding
-    rows = [["", *plan.labels]]
-    for name, text, symbol in (("yV1", tr("{symbol}, mm"), "y_{V1}"), ("yV2", tr("{symbol}, mm"), "y_{V2}"),
-                               ("theta1", "{symbol}", "θ_1"), ("theta2", "{symbol}", "θ_2")):
-        rows.append([text.format(symbol=symbol), *(fixed(v, 2) if np.isfinite(v) else "−∞" for v in plan[name].value)])
-    inner = canvas.title(box, tr("Velocities and specific sliding"))
-    listed.table_in(canvas, inner, rows, 14.0, [24.0])
+    in_mm = tr("{symbol}, mm")
+    rows = [["", *plan.labels], *([text.format(symbol=symbol), *(fixed(v, 2) if np.isfinite(v) else "−∞" for v in plan[name].value)]
+                                  for name, text, symbol in (("yV1", in_mm, "y_{V1}"), ("yV2", in_mm, "y_{V2}"),
+                                                             ("theta1", "{symbol}", "θ_1"), ("theta2", "{symbol}", "θ_2")))]
+    listed.table_in(canvas, canvas.title(box, tr("Velocities and specific sliding")), rows, 14.0, [24.0])
 
 
 def parameters(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -327,15 +323,14 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
         (tr("Base pitch, mm"), "p_b", fixed(gear.pb * 1e3, 2)),
         *((tr("Sliding at the dedendum of wheel {wheel} (point {point})").format(wheel=i, point=point), f"θ_{i}",
            fixed(gear.greatest_sliding[i - 1], 2)) for i, point in ((1, entry), (2, leave))),
+        *((tr("ρ of wheel {wheel}: limit ≤ lowest, mm").format(wheel=w.number), f"ρ_{{l{w.number}}}; ρ_{{p{w.number}}}",
+           f"{fixed(w.rho_limit * 1e3, 2)}; {fixed(w.t_low * 1e3, 2)}") for w in gear.wheels if gear.profile == "rack"),
+        (tr("Tooth thickness at the tip, in modules (≥ 0.2)"), "s_{a1}; s_{a2}",
+         "; ".join(fixed(w.step("sa_m").value, 2) for w in gear.wheels)),
     ]
-    if gear.profile == "rack":
-        rows += [(tr("ρ of wheel {wheel}: limit ≤ lowest, mm").format(wheel=w.number), f"ρ_{{l{w.number}}}; ρ_{{p{w.number}}}",
-                  f"{fixed(w.rho_limit * 1e3, 2)}; {fixed(w.t_low * 1e3, 2)}") for w in gear.wheels]
-    rows += [(tr("Tooth thickness at the tip, in modules (≥ 0.2)"), "s_{a1}; s_{a2}",
-              "; ".join(fixed(w.step("sa_m").value, 2) for w in gear.wheels))]
     if gear.internal:
-        clear = degrees(float(gear.step("tips_clear").value))
-        rows += [(tr("Clearance of the tips beside the mesh (≥ 0)"), "δ_{12}", f"{fixed(clear, 2)}°")]
+        rows += [(tr("Clearance of the tips beside the mesh (≥ 0)"), "δ_{12}",
+                  f"{fixed(degrees(float(gear.step('tips_clear').value)), 2)}°")]
     one, two = gear.wheels
     scale = canvas.scales.get("gear-engagement") or gear.picture_scale()
     notes = [
@@ -366,8 +361,8 @@ def _forms(plan: Plan) -> Iterator[Form]:
     """The equations of pair and wheels, then those of the pair alone, broken at several widths."""
     of_pair = list(equations(plan, OF_PAIR, True))
     every = [*of_pair, *equations(plan, [f"{name}{i}" for i in (1, 2) for name in OF_WHEEL], False)]
-    for lines, (step, width) in product((every, of_pair), WAYS):
-        yield Form([[part for line in lines for part in broken(line, width, HEIGHT, "(?= = )")]], HEIGHT, step)
+    return (Form([[part for line in lines for part in broken(line, width, HEIGHT, "(?= = )")]], HEIGHT, step)
+            for lines, (step, width) in product((every, of_pair), WAYS))
 
 
 of_pair = Formulas(marked("The gear pair in numbers"), "gear-geometry",
@@ -405,9 +400,8 @@ def _of_shifts(plan: Plan) -> int:
 
 def _decimals(step: Step) -> int:
     """Fixed decimals of a number of the pair, 0 for one that has none."""
-    if step.rule.unit == "mm" and step.name != "m":
-        return 2
-    return {"eps_alpha": 3, "inv_alpha": 5, "inv_alpha_w": 5}.get(step.name, 0)
+    return 2 if step.rule.unit == "mm" and step.name != "m" else \
+        {"eps_alpha": 3, "inv_alpha": 5, "inv_alpha_w": 5}.get(step.name, 0)
 
 
 def equations(plan: Plan, names: Iterable[str], letters: bool) -> Iterator[str]:

@@ -66,9 +66,8 @@ class Window:
 
     def breaks(self, s: PlayerStage, wheel: GearWheel) -> None:
         """Break lines where the edge of the picture cuts a wheel (GOST 2.303: thin, with a kink)."""
-        centre = s.at(f"O{wheel.number}")
         inner, outer = (abs(complex(s.frame(r)) - complex(s.frame(0))) for r in (wheel.ra, wheel.outside))
-        for a, b in chords(self.box, centre, outer, inner if wheel.ring else 0.0):
+        for a, b in chords(self.box, s.at(f"O{wheel.number}"), outer, inner if wheel.ring else 0.0):
             u = (b - a) / abs(b - a)
             kinks = max(round(abs(b - a) / KINKS_APART_MM), 1)
             points = [a - BREAK_OVER_MM * u]
@@ -186,12 +185,6 @@ ENGAGED_PITCHES = 1.2
 """So many pitches from the line of centres there are no radii: the teeth in mesh are there."""
 
 
-def draw_radii(picture: Any) -> None:
-    """Draw the radii of both wheels, when all else is on the picture."""
-    for wheel in picture.gear.wheels:
-        Radii(picture, wheel).draw()
-
-
 class Radii:
     """The radii of one wheel.
 
@@ -229,8 +222,7 @@ class Radii:
         turned = direction + pi if back else direction
         start, up = self.outer if back else self.outer - laid.width, rect(1, turned + pi / 2)
         canvas.put(laid, self.centre + start * u + NAME_OVER_MM * up, turned, text)
-        middle = self.centre + (self.outer - laid.width / 2) * u + (NAME_OVER_MM + NAME_HEIGHT_MM / 2) * up
-        self.dimension(first, tip, text, middle)
+        self.dimension(first, tip, text, self.centre + (self.outer - laid.width / 2) * u + (NAME_OVER_MM + NAME_HEIGHT_MM / 2) * up)
 
     def dimension(self, first: int, tip: complex, text: str, middle: complex) -> None:
         """What was drawn from the mark ``first`` on is the dimension of a radius."""
@@ -279,9 +271,8 @@ class Radii:
 
     def begin(self, direction: float) -> float:
         """Where a radius begins: beside the centre, of a broken wheel in what is seen of it."""
-        if self.wheel.number not in self.picture.broken:
-            return 2.0
-        return float(self.picture.within(self.wheel, 0.0) / abs(sin(direction)))
+        return 2.0 if self.wheel.number not in self.picture.broken else \
+            float(self.picture.within(self.wheel, 0.0) / abs(sin(direction)))
 
     def seen(self, key: str, text: str, direction: float) -> bool:
         """Whether a radius has its tip in the picture, and its lettering clear of the dimension of the centres too."""
@@ -295,15 +286,15 @@ class Radii:
     def clear(self, key: str, direction: float) -> bool:
         """Whether nothing but this wheel's circles is met by a radius that begins with its name."""
         start, end = sorted((self.outer, self.tips[key]))
-        strip = Box(start, -NAME_CLEAR_MM, end, NAME_CLEAR_MM)
-        return self.legible(key, direction) and not self.drawn.count_in(strip, self.centre, direction)
+        return self.legible(key, direction) and not self.drawn.count_in(Box(start, -NAME_CLEAR_MM, end, NAME_CLEAR_MM), self.centre,
+                                                                        direction)
 
     def legible(self, key: str, direction: float) -> bool:
         """Whether nothing is drawn where the name of a radius would stand."""
         width, up = letter(self.texts[key], NAME_HEIGHT_MM).width, 1 if cos(direction) >= -1e-9 else -1
         low, high = sorted((-up * NAME_CLEAR_MM, up * (NAME_OVER_MM + NAME_HEIGHT_MM + NAME_CLEAR_MM)))
-        name = Box(self.outer - width - NAME_INSIDE_MM, low, self.outer + NAME_CLEAR_MM, high)
-        return not self.drawn.count_in(name, self.centre, direction)
+        return not self.drawn.count_in(Box(self.outer - width - NAME_INSIDE_MM, low, self.outer + NAME_CLEAR_MM, high), self.centre,
+                                       direction)
 
     def on_arc(self, key: str, direction: float, right: bool) -> None:
         """Name of a circle where its radius does not fit in: on the longest arc that is seen, of a whole circle in a direction.
@@ -317,6 +308,5 @@ class Radii:
         whole = end - start > 2 * pi - 1e-6
         inset = (letter(name, NAME_HEIGHT_MM).width + right * CENTRES_ROOM_MM) / radius
         inset = min(max(0.05 * (end - start), inset), (end - start) / 2)
-        sides = sorted((start + inset, end - inset), key=lambda angle: cos(angle))
-        out = rect(1, direction if whole else sides[right])
+        out = rect(1, direction if whole else sorted((start + inset, end - inset), key=lambda angle: cos(angle))[right])
         self.canvas.label(self.centre + radius * out, name, away=out if whole else -out, thin=KEPT_OFF)

@@ -57,8 +57,7 @@ def picture_room(gear: GearPair, width: float, height: float) -> float:
     And most of the smaller wheel across the width.
     """
     smaller = 1.45 * min(w.ra for w in gear.wheels)
-    tall = height - 60 if gear.internal else 2 / 3 * (height - 16)
-    return float(min(tall, (width - 12) / smaller * gear.height))
+    return float(min(height - 60 if gear.internal else 2 / 3 * (height - 16), (width - 12) / smaller * gear.height))
 
 
 Broken = frozenset[int]
@@ -174,9 +173,9 @@ class GearPicture:
         spare = self.box.height - gear.a_w / self.mu.mu
         # The smaller wheel is shown whole, if that leaves room beyond the other's centre; both are cut alike otherwise.
         above = one if one <= two else spare - two
-        if not EDGE <= above <= spare - EDGE or min(one, two) > MOSTLY * spare:
-            above = spare / 2
-        return complex((self.box.x0 + self.box.x1) / 2, self.box.y1 - above - gear.wheels[0].rw / self.mu.mu)
+        whole = EDGE <= above <= spare - EDGE and min(one, two) <= MOSTLY * spare
+        return complex((self.box.x0 + self.box.x1) / 2,
+                       self.box.y1 - (above if whole else spare / 2) - gear.wheels[0].rw / self.mu.mu)
 
     def beside(self, pole: complex) -> complex:
         """The pole moved aside where the divisions of an involute, which go on beyond its foot N, would leave the picture.
@@ -252,8 +251,8 @@ class GearPicture:
         c, s = self.canvas, self.stage
         n1, n2, a, b, pole = (self.of(k) for k in ("N1", "N2", "A", "B", "Pw"))
         u = complex(s.plan["N1N2"].value)
-        beside = min(pole.real - self.window.box.x0, self.window.box.x1 - pole.real)
-        reach = min(1.25 * max(abs(n1 - pole), abs(n2 - pole)), beside - 8.0)
+        reach = min(1.25 * max(abs(n1 - pole), abs(n2 - pole)),
+                    min(pole.real - self.window.box.x0, self.window.box.x1 - pole.real) - 8.0)
         h = self.gear.hand
         self.window.line(s, "N1N2", pole - h * reach, pole + h * reach, "thin")
         for end in (pole - h * reach, pole + h * reach):
@@ -274,13 +273,11 @@ class GearPicture:
             s.line(f"N{i}", corner, foot + 3 * inward, "thin", "symbol")
             s.dot(f"N{i}", 0.8, "main")
             c.label(foot, f"N_{i}", away=away - inward, height=5, gap=1.5)
-        alpha = f"α_w = {degrees_and_minutes(self.gear.alpha_w)}"
-        radius = (abs(n2 - pole) + abs((b if self.gear.driver == 1 else a) - pole)) / 2
         start, end = (pi, pi + self.gear.alpha_w) if h < 0 else (-self.gear.alpha_w, 0.0)
         pen, o1 = s.pen("alpha_w", "dimension"), self.of("O1")
-        pen.angle_mark(pole, start, end, radius, "α_w")
+        pen.angle_mark(pole, start, end, (abs(n2 - pole) + abs((b if self.gear.driver == 1 else a) - pole)) / 2, "α_w")
         near = self.within(self.gear.wheels[0], 2.2 * UNDER) if 1 in self.broken else self.mm(self.gear.wheels[0].rb) * 0.45
-        angle_beside(pen, o1, phase(n1 - o1), -pi / 2, near, alpha)
+        angle_beside(pen, o1, phase(n1 - o1), -pi / 2, near, f"α_w = {degrees_and_minutes(self.gear.alpha_w)}")
 
     def pole_letter(self) -> None:
         """Letter of the pole beyond the root circle of wheel 1 where nothing is drawn, its leader clear of flanks."""
@@ -296,8 +293,7 @@ class GearPicture:
             end = self.pole - (along + max((root - beyond) ** 2 - (abs(foot) ** 2 - along**2), 0.0) ** 0.5) * way
             at = end + way * (0.5 + min(half.real / max(abs(way.real), 1e-9), half.imag / max(abs(way.imag), 1e-9)))
             box = Box(at.real - half.real, at.imag - half.imag, at.real + half.real, at.imag + half.imag).inset(-0.5)
-            start = self.pole + 2.0 * way
-            return end, at, not (ink.count_in(box) or ink.is_crossed(start, end))
+            return end, at, not (ink.count_in(box) or ink.is_crossed(self.pole + 2.0 * way, end))
 
         turns = sorted(np.arange(-60.0, 61.0, 4.0), key=abs)
         places = (tried(turn, beyond) for beyond in np.arange(1.5, 26.0, 0.5) for turn in turns)
@@ -314,8 +310,8 @@ class GearPicture:
         offset, text = 12 - (self.box.x1 - 12 - top.real), f"a_w = {fixed(self.gear.a_w * 1e3, 2)}"
         a, b = bottom + 12, top + 12
         end = min((letter(text, 5.0).width / 2 + 2.0) / abs(b - a), 0.5)
-        shares = sorted(np.linspace(end, 1.0 - end, 101), key=lambda share: abs(share - 0.5))
-        dimension(self.canvas, self.first, a, b, [offset], text, 1e3 * self.gear.a_w / abs(b - a), (5.0, 3.5), shares)
+        dimension(self.canvas, self.first, a, b, [offset], text, 1e3 * self.gear.a_w / abs(b - a), (5.0, 3.5),
+                  sorted(np.linspace(end, 1.0 - end, 101), key=lambda share: abs(share - 0.5)))
 
     def unrolling(self, wheel: GearWheel) -> None:
         """Divisions of P_wN, equal arcs, tangents and the involute through their ends."""
@@ -333,8 +329,7 @@ class GearPicture:
                 s.line(str(k), d - 1.2j * u, d + 1.2j * u, "thin", "point")
             if k != parts:
                 play(s, [f"E{k}"])
-                out = (t - centre) / abs(t - centre)
-                s.line(f"{k}′", t - 10 * out, t, "construction", "axis")
+                s.line(f"{k}′", t - 10 * ((t - centre) / abs(t - centre)), t, "construction", "axis")
             s.dot(f"E{k}", 0.5, "thin")
             if 0 < k != parts:
                 c.label(d, str(k), away=u * 1j, height=2.5, gap=0.8, leader=False)
@@ -363,8 +358,7 @@ class GearPicture:
         s.pen(shape.step, "hatch").polyline(outline[half:], "thin")
         hatch_between(c, outline[:half], outline[half:][::-1])
         ends = outline[0], outline[half - 1]
-        names = ("A", "B") if (wheel.number == 1) == (self.gear.driver == 1) else ("B", "A")
-        for name, p in zip(names, ends, strict=True):
+        for name, p in zip(("A", "B") if (wheel.number == 1) == (self.gear.driver == 1) else ("B", "A"), ends, strict=True):
             c.label(complex(p), f"{name}_{wheel.number}", away=p - centre - axis * abs(p - centre), height=3.5, gap=1.5)
 
     def rim(self, ring: GearWheel) -> None:
@@ -394,10 +388,10 @@ class GearPicture:
             ends.reverse()
         first, last = ends
         drawn = float(self.gear.engagement[f"phi{i}"].value)
-        pen = self.stage.pen(f"phi{i}", "dimension")
         # Of a broken wheel in what is seen of it.
         radius = self.within(wheel, UNDER) if i in self.broken else self.mm(wheel.rf) * 0.66
-        angle_beside(pen, centre, first, last, radius, f"φ_{{α{i}}} = {fixed(degrees(drawn), 2)}°")
+        angle_beside(self.stage.pen(f"phi{i}", "dimension"), centre, first, last, radius,
+                     f"φ_{{α{i}}} = {fixed(degrees(drawn), 2)}°")
 
     def dimensions(self, wheel: GearWheel) -> None:
         """Chordal thickness on an outer tooth, chordal pitch between the axes of the other two."""
@@ -466,6 +460,6 @@ def angle_beside(canvas: Canvas, vertex: complex, start: float, end: float, radi
         for tip, sense in ((lo, -1), (hi, 1)):
             canvas.arrow_head(vertex + rect(radius, tip), rect(1, tip + sense * (pi / 2 - 1.75 / radius)))
     ray = rect(1, start)
-    away = 1j * ray if (np.conj(ray) * rect(1, end)).imag < 0 else -1j * ray
-    canvas.label(vertex + radius * ray, markup, away=away, gap=2, dimension=len(canvas.dimensions))
+    canvas.label(vertex + radius * ray, markup, away=1j * ray if (np.conj(ray) * rect(1, end)).imag < 0 else -1j * ray, gap=2,
+                 dimension=len(canvas.dimensions))
     canvas.angle(first, vertex, lo, hi, radius, markup)

@@ -93,8 +93,7 @@ class _RackPicture:
         """
         self.window.edge()
         plan = self.gear.engagement  # with the wheel's centre where the rack's plan has it
-        centre = self.at(-complex(plan[f"O{self.wheel.number}"].value))
-        engaged = stage(self.canvas, plan, 0, PlanFrame(self.at.scale, centre))
+        engaged = stage(self.canvas, plan, 0, PlanFrame(self.at.scale, self.at(-complex(plan[f"O{self.wheel.number}"].value))))
         self.window.circles(engaged, [self.wheel], 0.7, leave=("rw",))
 
     def lines(self) -> None:
@@ -106,9 +105,8 @@ class _RackPicture:
         reference = self.height(0.0)
         self.window.line(s, "WT", complex(w.x0, self.pole.imag), complex(w.x1, self.pole.imag), "thin")
         self.window.line(s, "M", complex(w.x0, reference), complex(w.x1, reference), "centre")
-        names = [(self.pole.imag, tr("pitch line of the rack")), (reference, tr("reference line of the rack"))]
-        if abs(reference - self.pole.imag) < 0.3:
-            names = [(reference, tr("reference and pitch line of the rack"))]
+        names = [(reference, tr("reference and pitch line of the rack"))] if abs(reference - self.pole.imag) < 0.3 else \
+            [(self.pole.imag, tr("pitch line of the rack")), (reference, tr("reference line of the rack"))]
         # Their names end before the axis; in a window too narrow for that the axis ends under them.
         ends = [NAMED[1] * k + letter(text, 3.5).width + 2.0 for k, (_, text) in enumerate(names)]
         first = max(min(NAMED[0], self.pole.real - w.x0 - max(ends) - 1.0), NAMED[2])
@@ -149,8 +147,7 @@ class _RackPicture:
             start, flank = plan["F"].value[k], plan["flank"].value[k]
             # A flank that leaves the teeth need not be followed any further.
             foot = (start * np.conj(flank)).real
-            past = np.sqrt(outside**2 - abs(start - foot * flank) ** 2) - foot
-            placed[0] = start + flank * min(past, top / np.cos(rack.alpha))
+            placed[0] = start + flank * min(np.sqrt(outside**2 - abs(start - foot * flank) ** 2) - foot, top / np.cos(rack.alpha))
             placed = self.at(placed)
             s = self.stage.position(k)
             self.window.curve(s, "flank", placed, "thin")
@@ -163,8 +160,7 @@ class _RackPicture:
     def rack_and_teeth(self) -> None:
         """The rack in its middle position and the teeth it has cut, both flanks of each."""
         c = self.canvas
-        top = self.wheel.addendum * self.gear.m
-        outline = self.at(self.rack.placed(self.rack.outline(-1, 1, top), 0.0))
+        outline = self.at(self.rack.placed(self.rack.outline(-1, 1, self.wheel.addendum * self.gear.m), 0.0))
         self.window.curve(self.stage, "M", outline, "axis", "symbol")
         shape = self.gear.generated(self.wheel)
         teeth = shape.outline(-2, 2, step=0.5 * self.at.scale.mu)
@@ -177,11 +173,10 @@ class _RackPicture:
             root, tip = (self.at.scale.mm(r) for r in (self.wheel.rf, self.wheel.ra))
             self.window.line(self.stage, "O", self.at.origin + u * (root - 4), self.at.origin + u * (tip + 4), "centre")
         if -self.rack.rho_limit * np.sin(self.rack.alpha) / self.at.scale.mu > SEEN:
-            start = np.sqrt(self.wheel.rb**2 + self.wheel.t_fillet**2)
             flank = (shape.flank - shape.centre) / shape.axis
-            k = int(np.argmin(abs(abs(flank) - start)))
-            point = complex(self.at((flank[k] if shape.side > 0 else np.conj(flank[k])) * right))
-            c.label(point, tr("undercut"), away=-1 + 0.5j, height=3.5, gap=8)
+            k = int(np.argmin(abs(abs(flank) - np.sqrt(self.wheel.rb**2 + self.wheel.t_fillet**2))))
+            c.label(complex(self.at((flank[k] if shape.side > 0 else np.conj(flank[k])) * right)), tr("undercut"), away=-1 + 0.5j,
+                    height=3.5, gap=8)
 
     def dimensions(self, c: Canvas) -> None:
         """Shift, addendum, clearance, pitch and tip radius of the rack."""
@@ -200,8 +195,8 @@ class _RackPicture:
             c.dimension(a, b, 10.0, f"h_a^{{*}}m = {number(part * m * 1e3)}", factor=factor, apart=((a + b) / 2 - 10.0, -1 + 0j))
         low, high = self.height(-rack.depth), self.height(-rack.addendum * m)
         c.line(complex(x, low), complex(x - 12.0, low), "thin")
-        clearance = f"c^{{*}}m = {number(gear.clearance * m * 1e3, 3)}"
-        gap(c, complex(x - 10.0, low), complex(x - 10.0, high), clearance, -1, 1.5, factor)
+        gap(c, complex(x - 10.0, low), complex(x - 10.0, high), f"c^{{*}}m = {number(gear.clearance * m * 1e3, 3)}", -1, 1.5,
+            factor)
         if abs(rack.shift) * m / self.at.scale.mu > 0.3:
             low, high = sorted((self.height(0.0), self.height(-rack.shift * m)))
             gap(c, complex(w.x1 - 10, low), complex(w.x1 - 10, high), f"xm = {fixed(rack.shift * m * 1e3, 2)}", -1, 2.5, factor,

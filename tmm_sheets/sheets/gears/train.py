@@ -51,11 +51,10 @@ def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     """Tooth numbers and speeds of all wheels and carriers, and what was given."""
     train = project.train
     plan = train.kinematics
-    rows: list[tuple[str, ...]] = [(tr("Link"), "z", "n")]
-    for name in train.names:
-        teeth = str(int(plan[f"z{name}"].value)) if name in train.data.teeth else "–"
-        n = number(float(plan[f"n{name}"].value))
-        rows.append((f"{name} — {tr('given')}" if name in train.given else name, teeth, n))
+    rows = [(tr("Link"), "z", "n"), *(
+        (f"{name} — {tr('given')}" if name in train.given else name,
+         str(int(plan[f"z{name}"].value)) if name in train.data.teeth else "–", number(float(plan[f"n{name}"].value)))
+        for name in train.names)]
     ruled_table(canvas, canvas.title(box, tr("Wheels and speeds of rotation, rpm")), rows, (30.0, 40.0), LARGE,
                 list(map(sentence, train.warnings)))
 
@@ -87,8 +86,8 @@ def mobility_lines(train: Train, ratios: bool = True) -> list[str]:
         one = driving[0]
         for name in (name for name in n if name != one and name not in planets and n[name]):
             both = f"{one},{name}" if len(one + name) > 2 else one + name
-            speeds = [Quantity(f"n_{{{name}}}", n[name]) for name in (one, name)]
-            lines.append(equation(truediv, speeds, Quantity(f"i_{{{both}}}", n[one] / n[name])))
+            lines.append(equation(truediv, [Quantity(f"n_{{{name}}}", n[name]) for name in (one, name)],
+                                  Quantity(f"i_{{{both}}}", n[one] / n[name])))
     return lines + [of_turns(name, value) for name, value in n.items()]
 
 
@@ -143,11 +142,9 @@ def choice(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     """Table of the chosen tooth set and the runners-up."""
     reducer = project.reducer
     names = reducer.teeth_names
-    head = [tr("No."), *(f"z_{n[1:]}" for n in names), "u", "Δu, %", "η"]
-    rows = [head]
-    for i, found in enumerate(reducer.sets):
-        rows.append([str(i + 1), *(str(found[z].value) for z in names), fixed(found["u"].value, 3),
-                     fixed(found["u_deviation"].value * 100, 2), fixed(found["eta"].value, 3)])
+    rows = [[tr("No."), *(f"z_{n[1:]}" for n in names), "u", "Δu, %", "η"], *(
+        [str(i), *(str(found[z].value) for z in names), fixed(found["u"].value, 3), fixed(found["u_deviation"].value * 100, 2),
+         fixed(found["eta"].value, 3)] for i, found in enumerate(reducer.sets, 1))]
     inner = canvas.title(box, tr("Choice of the tooth numbers (1 is taken)"))
     if len(reducer.sets) > 1:
         by = tr("Chosen by: deviation |Δu| within {tiers} %, then the least height").format(
@@ -186,8 +183,7 @@ def conditions(project: Project, canvas: Canvas, box: Box, options: dict[str, An
     wheels = r.wheels
     each = ceil(len(wheels) / ceil(len(wheels) / 4))
     for some in (wheels[i:i + each] for i in range(0, len(wheels), each)):
-        names = "; ".join(f"d_{{{n}}}" for n in some)
-        rows.append((tr("Pitch diameters {names}, mm").format(names=names),
+        rows.append((tr("Pitch diameters {names}, mm").format(names="; ".join(f"d_{{{n}}}" for n in some)),
                      "; ".join(number(float(r.kinematics[f"d{n}"].value)) for n in some)))
     ruled_table(canvas, canvas.title(box, tr("Conditions and results of the reducer")), rows, (84.0,), LARGE,
                 list(map(sentence, r.warnings)))
@@ -220,10 +216,8 @@ def _lines(r: Reducer) -> Iterator[str]:
     yield from checks_of(r, r.stage(mesh))
     n = {name: Quantity(f"n_{{{link_name(name)}}}", float(r.kinematics[f"n{name}"].value), "1/min")
          for name in (one, four, mesh.carrier)}
-    if r.driver == "carrier":
-        yield equation(lambda n, i: n * (1 - i), (n[mesh.carrier], inner), n[one])
-    else:
-        yield equation(truediv, (n[enters], ratio), n[mesh.carrier])
+    yield equation(lambda n, i: n * (1 - i), (n[mesh.carrier], inner), n[one]) if r.driver == "carrier" else \
+        equation(truediv, (n[enters], ratio), n[mesh.carrier])
     yield from willis_lines(r, mesh)
 
 
@@ -236,12 +230,11 @@ reducer_mobility = Lines(marked("Mobility and speeds of the links"),
 
 def _motions(project: Project, canvas: Canvas) -> list[list[str]]:
     """Speeds of the wheels of every carrier as they are, and as one sees them who turns with it (Willis)."""
-    rows = [[tr("Link"), tr("n, rpm"), f"n − n_H, {tr('rpm')}", f"ω, {tr('rad/s')}"]]
     found = list(_inverted(project))
     several = len({carrier for carrier, *_ in found}) > 1
-    for carrier, name, n, n_carrier in found:
-        rows.append([f"{name} ({carrier})" if several else name, number(n), number(n - n_carrier), number(n * pi / 30, 5)])
-    return rows
+    return [[tr("Link"), tr("n, rpm"), f"n − n_H, {tr('rpm')}", f"ω, {tr('rad/s')}"], *(
+        [f"{name} ({carrier})" if several else name, number(n), number(n - n_carrier), number(n * pi / 30, 5)]
+        for carrier, name, n, n_carrier in found)]
 
 
 inverted = Table(marked("Inverted motion (carrier held)"), _motions, (0.25,) * 4)
@@ -303,17 +296,13 @@ def _assembly(teeth: dict[str, int], q: int, one: Mesh, other: Mesh) -> dict[str
     """The whole number that lets planets stand at equal angles, of two central wheels of one carrier."""
     join = "−" if one.sign * other.sign > 0 else "+"
     (a, b), (c, d) = ((m.central, m.planet) for m in (one, other))
-    if b == d:
-        letters, numbers = f"(z_{{{a}}} {join} z_{{{c}}})/q", f"({teeth[a]} {join} {teeth[c]})/{q}"
-    else:
-        divisor = tr("gcd({one}; {two})")
-        letters = f"(z_{{{a}}}·z_{{{d}}} {join} z_{{{b}}}·z_{{{c}}})/(q·{divisor.format(one=f'z_{{{b}}}', two=f'z_{{{d}}}')})"
-        numbers = f"({teeth[a]}·{teeth[d]} {join} {teeth[b]}·{teeth[c]})/({q}·{divisor.format(one=teeth[b], two=teeth[d])})"
-    value = whole_number(teeth, one, other) / q
+    divisor, value = tr("gcd({one}; {two})"), whole_number(teeth, one, other) / q
+    letters, numbers = (f"({z[a]} {join} {z[c]})/{count}" if b == d else
+                        f"({z[a]}·{z[d]} {join} {z[b]}·{z[c]})/({count}·{divisor.format(one=z[b], two=z[d])})"
+                        for z, count in (({name: f"z_{{{name}}}" for name in teeth}, "q"), (teeth, q)))
     said = f"{numbers} = {number(value)}"
-    if value != int(value):
-        said = tr("{number} (not whole: no equal angles)").format(number=said)
-    return {"letters": letters, "numbers": said}
+    return {"letters": letters, "numbers": said if value == int(value) else
+            tr("{number} (not whole: no equal angles)").format(number=said)}
 
 
 checks = Lines(marked("Conditions of the planets"), lambda project, canvas: checks_of(project.train, *project.train.stages))

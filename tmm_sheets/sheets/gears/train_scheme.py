@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from cmath import rect
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from math import cos, gcd, pi, sin
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_layout import spread
 from tmm_sheets.numbers import fixed, number
@@ -30,14 +29,20 @@ FACE = 7.0
 """Width of a wheel's rim in the axial view, mm."""
 STUB = 15.0
 """Length of the shafts that lead in and out, mm."""
+LED = 13.0
+"""Least length of the shaft that leads out, beyond the web of a ring, mm."""
 WALL = 6.0
 """Distance from a wheel that stands to the frame that holds it, mm."""
 HUB = 2.0
 """Distance of a free wheel's hub from the line of its shaft, mm."""
 OVER = 34.0
 """Room over and under the views with their title, mm."""
-AXIS, CLEAR, APART = 6.0, 1.2, 8.0
-"""How far the line of zero velocity runs beyond the picture, distances of the scale factor over it and from the other one, mm."""
+AXIS = 6.0
+"""How far the line of zero velocity runs beyond the picture, mm."""
+TITLE = 10.0
+"""Height of the title of end views, mm."""
+BESIDE = 12.0
+"""Distance of end views of stages from each other, mm."""
 STRETCHED = 1.8
 """So many times wider the axial view may be drawn where there is room: only its heights are to scale."""
 BETWEEN = 12.0, 34.0
@@ -118,18 +123,12 @@ class TrainScheme:
     edge of a ring meshes with one; wheels on one planet shaft are joined by a sleeve.
     """
 
-    canvas: Canvas
-    mu: Scale
-    box: Box
-    axis: float
-    picture: Box
-    front: complex
     column, stub, face = COLUMN, STUB, FACE
 
     def __init__(self, train: Train) -> None:
         self.train = train
         self.edges, self.entered = columns_of(train)
-        self.ends = {name for name in (train.entry, train.exit) if name}
+        self.ends = {name: (side, sign) for name, side, sign in self.leading()}
         above, beside = list[float](), list[float]()
         for m in train.meshes:
             above += [train.height(m.central) + side * train.radius(m.central, m) for side in (1, -1)]
@@ -141,6 +140,24 @@ class TrainScheme:
         self.top, self.bottom, self.side = max(above), -min(above), max(beside)
         self.width = (len(self.edges) - 1) * COLUMN + 2 * STUB
 
+    def leading(self) -> Iterator[tuple[str, int, str]]:
+        """Links whose shafts lead in at the left (-1) and out at the right (1), with the signs of their speeds.
+
+        Those of a train are what is given there and what ends there, with a wheel in a single mesh or a carrier.
+        """
+        train, signs = self.train, {-1: tr("n_{in}"), 1: tr("n_{out}")}
+        turning = [name for name in train.names if name in train.axes and not train.stands(name)]
+        ways = {-1: [name for name in turning if name in train.given], 1: [
+            name for name in turning if name not in train.given and not any(name in shaft for shaft in train.data.shafts)
+            and sum(name in (m.central, m.planet) for m in train.meshes) <= 1]}
+        if train.entry or train.exit:
+            ways = {-1: [train.entry] * bool(train.entry), 1: [train.exit] * bool(train.exit)}
+        for side, edge in ((-1, self.edges[0]), (1, self.edges[-1])):
+            there = {train.entry, train.exit, edge.carrier, *(name for m in edge.meshes for name in (m.central, m.planet))}
+            # On one axis others turn about the shaft of the first.
+            for name in {train.height(name): name for name in reversed(ways[side]) if name in there}.values():
+                yield name, side, signs[side] if len(ways[side]) == 1 else f"n_{{{link_name(name)}}}"
+
     def turns(self, m: Mesh) -> list[float]:
         """Angles of the planets of a mesh from the first, as many as can be put in at equal angles, rad."""
         count = at_equal_angles(self.train, self.train.stage(m)) if m.carrier else 1
@@ -150,8 +167,7 @@ class TrainScheme:
     def shaft(self, planet: str) -> int:
         """Number of a planet's shaft among those of its carrier, 0 for the first."""
         own = next(m for m in self.train.meshes if m.planet == planet)
-        of = [s for s in self.train.stages if s[0].carrier == own.carrier]
-        return of.index(self.train.stage(own)) if own.carrier else 0
+        return [s for s in self.train.stages if s[0].carrier == own.carrier].index(self.train.stage(own)) if own.carrier else 0
 
     def opposite(self, satellite: str) -> bool:
         """Whether more planets than one are on its carrier: another stands at the other side of the main axis."""
@@ -162,15 +178,14 @@ class TrainScheme:
         own = next(m for m in self.train.meshes if satellite == m.planet)
         if not own.carrier:
             return (1,)
-        if sum(s[0].carrier == own.carrier for s in self.train.stages) > 1:
-            return ((1, -1)[self.shaft(satellite) % 2],)
-        return (1, -1) if self.opposite(satellite) else (1,)
+        return ((1, -1)[self.shaft(satellite) % 2],) if sum(s[0].carrier == own.carrier for s in self.train.stages) > 1 else \
+            (1, -1) if self.opposite(satellite) else (1,)
 
     def draw(self) -> None:
         """Draw the three views."""
         with self.canvas.as_role("symbol"):
             self.axial()
-            self.end_view()
+            self.end_views()
         self.velocities()
 
     def fitted(self, width: float, height: float) -> Scale:
@@ -185,18 +200,23 @@ class TrainScheme:
         """Find the scale and the places of the axial view, the picture of velocities beside it and the end view at the right."""
         self.canvas = canvas
         self.mu = canvas.scales[key] = self.fitted(box.width, box.height)
-        self.box = self.canvas.title(box, title, ratio(self.mu))
-        spare = self.box.height - (self.top + self.bottom) / self.mu.mu
-        self.axis = self.box.y0 + max(spare / 2, spare - UNDER) + self.bottom / self.mu.mu
-        self.front = complex(self.box.x1 - 6 - self.side / self.mu.mu, self.axis)
-        room = self.front.real - self.side / self.mu.mu - self.box.x0
+        reach, right = self.side / self.mu.mu, box.x1 - 6
+        room = right - 2 * reach - box.x0
         self.stretch((room - self.pictured() - 2 * BETWEEN[0]) / self.width)
         between = max((room - self.width - self.pictured()) / 2, BETWEEN[0])
         if (spare := 2 * (between - BETWEEN[1])) > OFFERED:  # what is left at the right is of use to others
-            self.front -= spare
+            right -= spare
             between = BETWEEN[1]
-        left = self.box.x0 + self.width + between
-        self.picture = Box(left, self.box.y0, self.front.real - self.side / self.mu.mu - between, self.box.y1)
+        left = box.x0 + self.width + between
+        speeds = [complex(step.value).real for step in self.train.velocities if step.rule.gives == "point"]
+        room = right - 2 * reach - between - left
+        self.speed = Scale("μ_V", handy((max(speeds) - min(speeds)) / (min(room, self.pictured()) - 24.0)), tr("(m/s)/mm"))
+        canvas.scales[self.train.velocities.name] = self.speed
+        self.box = canvas.title(box, title, f"{ratio(self.mu)};  {self.speed}")
+        spare = self.box.height - (self.top + self.bottom) / self.mu.mu
+        self.axis = self.box.y0 + max(spare / 2, spare - UNDER) + self.bottom / self.mu.mu
+        self.front = complex(right - reach, self.axis)
+        self.zero = complex(left + (room - self.speed.mm(max(speeds) + min(speeds))) / 2, self.axis)
 
     def stretch(self, share: float) -> None:
         """Draw the axial view so many times wider, as far as that looks well."""
@@ -216,15 +236,10 @@ class TrainScheme:
         """A wheel edge on: its disc with the rim at both ends; a ``free`` one turns on its shaft with a hub of its own."""
         c = self.canvas
         low, high = complex(x, self.y(height - radius)), complex(x, self.y(height + radius))
-        if free:
-            hub = [complex(x, self.y(height) + side * HUB) for side in (-1, 1)]
-            c.line(low, hub[0], "main")
-            c.line(hub[1], high, "main")
-            for end in hub:
-                c.line(end - self.face / 2, end + self.face / 2, "main")
-        else:
-            c.line(low, high, "main")
-        for end in (low, high):
+        ends = [low, *(complex(x, self.y(height) + side * HUB) for side in (-1, 1) if free), high]
+        for a, b in zip(ends[::2], ends[1::2], strict=True):
+            c.line(a, b, "main")
+        for end in ends:
             c.line(end - self.face / 2, end + self.face / 2, "main")
         at = high if label > 0 else low
         c.label(at + self.face / 2, name, away=complex(1, label), height=5, gap=1.2)
@@ -279,13 +294,12 @@ class TrainScheme:
 
     def led_out(self) -> None:
         """Shafts of the driving and the driven link, with their bearings and the names of their speeds."""
-        for name, side, text in ((self.train.entry, -1, tr("n_{in}")), (self.train.exit, 1, tr("n_{out}"))):
-            if name:
-                y = self.y(self.train.height(name))
-                end = self.box.x0 + (self.width if side > 0 else 0.0)
-                self.canvas.line(complex(end, y), complex((max if side > 0 else min)(self.columns[name]), y), "main")
-                self.bearing(end - side * 6.0, y)
-                self.canvas.label(complex(end, y), text, away=complex(side, 1), height=5, gap=1.5)
+        for name, (side, sign) in self.ends.items():
+            y, begin = self.y(self.train.height(name)), (max if side > 0 else min)(self.columns[name])
+            end = max(self.box.x0 + self.width, begin + LED) if side > 0 else self.box.x0
+            self.canvas.line(complex(end, y), complex(begin, y), "main")
+            self.bearing(end - side * 6.0, y)
+            self.canvas.label(complex(end, y), sign, away=complex(side, 1), height=5, gap=1.5)
 
     def joined(self) -> None:
         """Shafts and sleeves of what turns together: about a standing axis a shaft, planets on a carrier by a sleeve."""
@@ -374,34 +388,72 @@ class TrainScheme:
 
     # --- view along the axis ------------------------------------------------------------------------------------
 
-    def end_view(self) -> None:
-        """Pitch circles of all wheels, the planets of a carrier at equal angles; wheels alike in one place have one circle."""
-        c, o, mm, train = self.canvas, self.front, self.mu.mm, self.train
-        reach = mm(self.side) + 4
-        c.line(o - reach, o + reach, "centre")
-        c.line(complex(o.real, self.y(-self.bottom) - 4), complex(o.real, self.y(self.top) + 4), "centre")
-        c.dot(o, 1.2)
-        circles = list[tuple[complex, float, list[str]]]()
-        for m in train.meshes:
+    def end_views(self) -> None:
+        """Pitch circles of all wheels; unlike stages beside each other, to the largest scale with room for all."""
+        stages: dict[Any, list[Mesh]] = {}
+        for carrier in dict.fromkeys(m.carrier for m in self.train.meshes):
+            own = [m for m in self.train.meshes if m.carrier == carrier]
+            look = frozenset((round(1e6 * abs(z)), round(1e6 * radius)) for z, radius, _ in self.circles(own)) if carrier else ""
+            stages.setdefault(look, []).extend(own)
+        if len(stages) - ("" in stages) < 2:
+            self.end_view(self.train.meshes, self.front, self.mu)
+            return
+        views = sorted(stages.values(), key=self.reach, reverse=True)
+        width, height = 2 * self.side / self.mu.mu, self.box.height - TITLE
+        scales: dict[int, tuple[Scale, list[float], list[float]]] = {}
+        for c in range(1, len(views) + 1):
+            wide = [2 * max(map(self.reach, views[k::c])) for k in range(c)]
+            high = [2 * max(map(self.reach, views[k:k + c])) for k in range(0, len(views), c)]
+            scales[c] = standard((sum(wide), width - BESIDE * len(wide)), (sum(high), height - BESIDE * len(high))), wide, high
+        count = min(scales, key=lambda c: scales[c][0].mu)
+        mu, wide, high = scales[count]
+        left, top = self.front.real - width / 2, self.box.y1 - TITLE
+        self.canvas.text(complex(self.front.real, top + 3.0), tr("End views {scale}").format(scale=ratio(mu)), 5.0, "centre")
+        for k, view in enumerate(views):
+            row, column = divmod(k, count)
+            x = left + mu.mm(sum(wide[:column]) + wide[column] / 2) + BESIDE * (column + 0.5)
+            self.end_view(view, complex(x, top - mu.mm(sum(high[:row]) + high[row] / 2) - BESIDE * (row + 0.5)), mu)
+
+    def reach(self, meshes: Sequence[Mesh]) -> float:
+        """How far wheels reach from the main axis, m."""
+        return max(abs(z) + radius for z, radius, _ in self.circles(meshes))
+
+    def circles(self, meshes: Sequence[Mesh]) -> list[tuple[complex, float, list[str]]]:
+        """Middles of pitch circles from the main axis, radii, m, and names; the planets of a carrier at equal angles.
+
+        Wheels alike in one place have one circle.
+        """
+        found = list[tuple[complex, float, list[str]]]()
+        for m in meshes:
             for name in (m.central, m.planet):
-                planet = bool(m.carrier) and name == m.planet
-                radius = float(mm(train.radius(name, m)))
-                for turn in self.turns(m) if planet else [0.0]:
-                    at = o + rect(mm(train.height(name)), pi / 2 + turn)
-                    if planet:
-                        c.line(o, at, "main")
-                    if abs(at - o) > 1e-6:
-                        c.dot(at, 1.0)
-                    alike = next((of for z, r, of in circles if abs(z - at) < 1e-6 and abs(r - radius) < 1e-6), None)
+                radius = float(self.train.radius(name, m))
+                for turn in self.turns(m) if m.carrier and name == m.planet else [0.0]:
+                    at = rect(self.train.height(name), pi / 2 + turn)
+                    alike = next((of for z, r, of in found if max(abs(z - at), abs(r - radius)) < 1e-9), None)
                     if alike is None:
-                        circles.append((at, radius, [name]))
+                        found.append((at, radius, [name]))
                     elif name not in alike:
                         alike.append(name)
-        count = max(len(self.turns(m)) for m in train.meshes)
+        return found
+
+    def end_view(self, meshes: Sequence[Mesh], o: complex, mu: Scale) -> None:
+        """Wheels of some meshes about the main axis at ``o``."""
+        c, planets = self.canvas, {m.planet for m in meshes if m.carrier}
+        circles = [(o + mu.mm(z), mu.mm(radius), names) for z, radius, names in self.circles(meshes)]
+        reach = max(abs((z - o).real) + radius for z, radius, _ in circles) + 4
+        low, high = (f(z.imag + side * radius for z, radius, _ in circles) for f, side in ((min, -1), (max, 1)))
+        c.line(o - reach, o + reach, "centre")
+        c.line(complex(o.real, low - 4), complex(o.real, high + 4), "centre")
+        c.dot(o, 1.2)
         named: dict[str, tuple[complex, float]] = {}
         for at, radius, names in circles:
-            c.circle(at, radius, "main" if any(map(train.stands, names)) else "axis")
+            if planets.intersection(names):
+                c.line(o, at, "main")
+            if abs(at - o) > 1e-6:
+                c.dot(at, 1.0)
+            c.circle(at, radius, "main" if any(map(self.train.stands, names)) else "axis")
             named[", ".join(names)] = at, radius
+        count = max(len(self.turns(m)) for m in meshes)
         for k, (name, (at, radius)) in enumerate(named.items()):
             away = rect(1, pi / 2 - pi / count + 0.05 - 0.17 * k if abs(at - o) < 1e-6 else -0.4 - 0.5 * (k // 2))
             c.label(at + radius * away, name, away=away, height=3.5, gap=1.0)
@@ -410,27 +462,11 @@ class TrainScheme:
 
     def velocities(self) -> None:
         """Lines of the links over the heights of their points."""
-        c, plan = self.canvas, self.train.velocities
+        plan = self.train.velocities
         ends = {step.name: complex(step.value) for step in plan if step.rule.gives == "point"}
-        low, high = (f([v.real for v in ends.values()]) for f in (min, max))
-        mu = Scale("μ_V", handy((high - low) / (min(self.picture.width, self.pictured()) - 24.0)), tr("(m/s)/mm"))
-        c.scales[plan.name] = mu
-        whole = mu.mm(high - low)
-        zero = self.picture.x0 + (self.picture.width - whole) / 2 - mu.mm(low)
-        # As large as the title, if the picture's part of the place is wide enough.
-        laid = fitted(str(mu), self.picture.width, 5.0)
-        bottom, top = (f([v.imag for v in ends.values()]) for f in (min, max))
-        # Over the picture, and clear of the scale factor under the title of the views.
-        level = max(min(self.picture.y1 - 8.0, self.y(top) + 12.0), self.y(top) + AXIS + CLEAR + laid.descent)
-        x = (self.picture.x0 + self.picture.x1 - laid.width) / 2
-        if level + laid.ascent > self.box.y1:  # on the level of that one: beside it
-            half = letter(ratio(self.mu), 5.0).width / 2 + APART
-            x = min(x, self.box.centre.real - half - laid.width) if x + laid.width / 2 < self.box.centre.real else \
-                max(x, self.box.centre.real + half)
-        c.put(laid, complex(x, level), 0.0, str(mu))
-
-        s = placed(c, plan, complex(zero, self.axis), (mu.mu, self.mu.mu))
-        s.line("O", complex(zero, self.y(bottom) - AXIS), complex(zero, self.y(top) + AXIS), "axis", "axis")
+        low, high = (self.y(f(v.imag for v in ends.values())) for f in (min, max))
+        s = placed(self.canvas, plan, self.zero, (self.speed.mu, self.mu.mu))
+        s.line("O", complex(self.zero.real, low - AXIS), complex(self.zero.real, high + AXIS), "axis", "axis")
         self.heights(s, [name for name in ends if name[0].isupper()])
         self.vectors(s, {name: value for name, value in ends.items() if name[0].islower()})
         self.lines(s)
@@ -439,9 +475,8 @@ class TrainScheme:
         """Velocities of the points, from the line of zero velocity to their ends."""
         for name, value in ends.items():
             s.vector(name.upper(), name)
-            way = 1 if value.real > 0 else -1
-            letters = name if len(name) == 1 else f"{name[0]}_{name[1:]}"
-            self.canvas.label(s.at(name), letters, away=complex(way, 0.4), height=3.5, gap=1.2)
+            self.canvas.label(s.at(name), name if len(name) == 1 else f"{name[0]}_{name[1:]}",
+                              away=complex(1 if value.real > 0 else -1, 0.4), height=3.5, gap=1.2)
 
     def lines(self, s: PlayerStage) -> None:
         """Line of each link through the ends of the velocities of all its points."""
@@ -451,8 +486,8 @@ class TrainScheme:
             on = sorted((complex(p.value) for p in (*step.args, *(p for p in points if step in p.args))), key=lambda z: z.imag)
             a, b = complex(s.frame(on[0])), complex(s.frame(on[-1]))
             s.pen(step, "axis").ray_line(a, b, "axis", over=5.0, before=0.0 if abs(on[0].real) < 1e-12 else 5.0)
-            away = 1j * (b - a) * (-1 if (b - a).real > 0 else 1)
-            self.canvas.label(a + 0.62 * (b - a), link_name(step.name), away=away, height=5, gap=1.2)
+            self.canvas.label(a + 0.62 * (b - a), link_name(step.name), away=1j * (b - a) * (-1 if (b - a).real > 0 else 1),
+                              height=5, gap=1.2)
 
     def heights(self, s: PlayerStage, points: Sequence[str]) -> None:
         """Points of the scheme carried over to the line of zero velocity; those of one height have one line."""
@@ -485,8 +520,7 @@ def plan_of_speeds(train: Train, canvas: Canvas, box: Box) -> None:
     low, high = min(0.0, *values), max(0.0, *values)
     room, tall = box.width - 30, box.height - 44
     # A speed n takes n/mu_n mm, and with the picture's scale factors H = 30 mu_V/(pi mu_l mu_n).
-    least = max((high - low) / room, 30 / pi * picture.mu / (heights.mu * tall))
-    mu = Scale("μ_n", handy(least), tr("rpm/mm"))
+    mu = Scale("μ_n", handy(max((high - low) / room, 30 / pi * picture.mu / (heights.mu * tall))), tr("rpm/mm"))
     distance = 30 / pi * picture.mu / (heights.mu * mu.mu)
     inner = canvas.title(box, tr("Plan of the speeds of rotation"), tr("{scale};  H = {distance} mm").format(
         scale=mu, distance=fixed(distance, 1)))
@@ -508,12 +542,8 @@ def plan_of_speeds(train: Train, canvas: Canvas, box: Box) -> None:
         canvas.label(s.at(name), name, away=away, height=height)
     ends = [(s.at(step), step.name) for step in ends_of_rays(plan)]
     ends.sort(key=lambda pair: pair[0].real)
-    places = spread([end.real for end, _ in ends], NAME)
-    for i in range(len(places)):
-        places[i] = max(places[i], box.x0 + NAME * (i + 0.5))
-    for i in range(len(places)):
-        places[-1 - i] = min(places[-1 - i], box.x1 - NAME * (i + 0.5))
-    for (end, link), x in zip(ends, places, strict=True):
+    for k, ((end, link), wanted) in enumerate(zip(ends, spread([end.real for end, _ in ends], NAME), strict=True)):
+        x = min(max(wanted, box.x0 + NAME * (k + 0.5)), box.x1 - NAME * (len(ends) - k - 0.5))
         play(s, [link], "main")
         s.dot(link, 0.8, "main")
         s.line(link, end, complex(x, y + 7), "thin", "text")
@@ -528,12 +558,10 @@ def ends_of_rays(plan: Plan) -> list[Step]:
 def rows_of_points(of: Train, canvas: Canvas) -> list[list[str]]:
     """Heading and a row for each point whose velocity the picture has."""
     mu = canvas.scales[of.velocities.name]
-    rows = [[tr("Point"), tr("Distance from the axis, mm"), tr("Segment of the picture, mm"), tr("V, m/s")]]
-    for end in moving_points(of):
-        name, at = end.name.upper(), complex(end.value)
-        measured = f"|{name}{end.name}| = {fixed(abs(mu.mm(at.real)), 1)}"
-        rows.append([name, number(1e3 * abs(at.imag)), measured, number(at.real)])
-    return rows
+    ends = [(end.name.upper(), end.name, complex(end.value)) for end in moving_points(of)]
+    return [[tr("Point"), tr("Distance from the axis, mm"), tr("Segment of the picture, mm"), tr("V, m/s")], *(
+        [name, number(1e3 * abs(at.imag)), f"|{name}{end}| = {fixed(abs(mu.mm(at.real)), 1)}", number(at.real)]
+        for name, end, at in ends)]
 
 
 def moving_points(of: Train) -> list[Step]:
@@ -546,9 +574,6 @@ def rows_of_links(of: Train, canvas: Canvas) -> list[list[str]]:
     """Heading and a row for each link on the plan that the sheet has."""
     plan = of.plans[f"{of.data.part}-speeds"]
     mu = canvas.scales[plan.name]
-    rows = [[tr("Link"), tr("Segment of the plan, mm"), tr("n, rpm")]]
-    for end in ends_of_rays(plan):
-        name = link_name(end.name)
-        measured = f"|0–{name}| = {fixed(abs(mu.mm(complex(end.value).real)), 1)}"
-        rows.append([name, measured, number(float(plan[f"n{end.name}"].value))])
-    return rows
+    return [[tr("Link"), tr("Segment of the plan, mm"), tr("n, rpm")], *(
+        [link_name(end.name), f"|0–{link_name(end.name)}| = {fixed(abs(mu.mm(complex(end.value).real)), 1)}",
+         number(float(plan[f"n{end.name}"].value))] for end in ends_of_rays(plan))]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from math import degrees, pi
 from typing import TYPE_CHECKING, Any
@@ -211,15 +212,27 @@ LOWEST = 25.0
 
 
 def bearing_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the hodograph can do with, mm; none where there is no force, or where it has no end."""
-    _, _, course = _reaction(project)
-    if not np.isfinite(course).all() or is_zero(float(np.abs(course).max()), project.study.forces.force_size(project.force_index)):
-        return []
-    real = extent([course, np.zeros(1)])
+    """Places that the hodograph can do with, mm; none where there is no force, where it has no end or is too flat."""
     left, below, right, above = AROUND
-    longest = max(real.width, real.height)
-    return [(max(size * real.width / longest + left + right, 80.0), size * real.height / longest + below + above) for size in SIZES
-            if size * min(real.width, real.height) >= LOWEST * longest]
+    return [(max(size * width + left + right, 80.0), size * height + below + above) for width, height in _shape(project)
+            for size in SIZES if size * min(width, height) >= LOWEST]
+
+
+def _shape(project: Project) -> Iterator[tuple[float, float]]:
+    """Width and height of the hodograph, shares of the greater of both; of nothing, and of what has no end, none."""
+    course = _reaction(project)[2]
+    if np.isfinite(course).all() and not is_zero(float(np.abs(course).max()), project.study.forces.force_size(project.force_index)):
+        real = extent([course, np.zeros(1)])
+        yield real.width / max(real.width, real.height), real.height / max(real.width, real.height)
+
+
+def too_flat(project: Project) -> Iterator[Remark]:
+    """That the hodograph is left out, where no size of it can be read."""
+    with suppress(CannotBuild):  # without forces there is none
+        for high in (SIZES[0] * min(shape) for shape in _shape(project) if SIZES[0] * min(shape) < LOWEST):
+            yield Remark(marked("the hodograph of the reaction {force} is left out: {size} mm long it would be {high} mm wide, "
+                                "its numbers need {least} mm"),
+                         {"force": _reaction(project)[0], "size": f"{SIZES[0]:g}", "high": fixed(high, 1), "least": f"{LOWEST:g}"})
 
 
 def bearing(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -287,7 +300,8 @@ def load_graph(project: Project) -> Column:
     shown, cycle = _shown(project), project.cycle
     if not shown:
         return ()
-    turned = _angles(shown, cycle.period)
+    jumps = [j + s * HAIR for f in shown for j in f.jumps for s in (-1, 1)]  # both sides of each are drawn
+    turned = np.unique(np.clip(np.concatenate((np.linspace(0, cycle.period, SAMPLES), jumps)), 0, cycle.period))
     letter, unit = ("F", tr("N")) if shown[0].point is not None else ("M", tr("N·m"))
 
     def at(f: Applied) -> graphs.Floats:
@@ -295,8 +309,8 @@ def load_graph(project: Project) -> Column:
         sides = np.array([f.shown(cycle.turned, side) for side in (-1, 1)])
         return np.asarray(np.where(np.abs(sides[0]) > np.abs(sides[1]), *sides))
 
-    curves = [Curve(indexed(f.name), f"loads/{f.name}", turned, f.shown(turned), at(f)) for f in shown]
-    return (Quantity.of("loads", letter, unit, curves),)
+    return (Quantity.of("loads", letter, unit, [Curve(indexed(f.name), f"loads/{f.name}", turned, f.shown(turned),
+                                                      at(f)) for f in shown]),)
 
 
 loads = graphs.CycleView(_of_loads, lambda project, options: [column] if (column := load_graph(project)) else [])
@@ -306,13 +320,6 @@ loads = graphs.CycleView(_of_loads, lambda project, options: [column] if (column
 def _shown(project: Project) -> list[Applied]:
     pressures = {f.name for f in project.variant.force if f.bore is not None}
     return [f for f in project.applied if f.name not in pressures]
-
-
-def _angles(shown: list[Applied], period: float) -> graphs.Floats:
-    """Angles at which the curves are drawn, both sides of every jump among them."""
-    jumps = [j + s * HAIR for f in shown for j in f.jumps for s in (-1, 1)]
-    turned = np.unique(np.concatenate((np.linspace(0, period, SAMPLES), jumps)))
-    return turned[(turned >= 0) & (turned <= period)]
 
 
 def _many_strokes(project: Project, shown: list[Applied]) -> str | None:
@@ -382,10 +389,7 @@ def indicators(project: Project) -> list[Indicator]:
 def indicator_height(project: Project, shown: list[Indicator]) -> float:
     """Greatest ordinate, mm: by the scale factor that the project asks for, or as we choose it."""
     mu = project.variant.scales.get("indicator")
-    if mu is None:
-        return HEIGHT
-    top = max(float(np.max(one.ordinate(_angles_of_turns(project)))) for one in shown)
-    return min(top / mu, MOST)
+    return HEIGHT if mu is None else min(max(float(np.max(one.ordinate(_angles_of_turns(project)))) for one in shown) / mu, MOST)
 
 
 def indicator_reach(project: Project) -> tuple[list[complex], list[complex]]:

@@ -184,6 +184,8 @@ def _quantities(project: Project) -> Iterator[tuple[str, str]]:
                  for g in m.groups]
     lengths: list[Any] = [m.crank.length, *chain(*of_groups), *(p.distance for p in m.points)]
     given_of_input: list[Any] = [] if m.drive is None else [*m.drive.place, m.drive.speed, m.drive.acceleration]
+    # Of a cylinder it is a segment of the plans that no two points of the mechanism tell.
+    drawn = {"m/s": " = |pr|·μ_V"} if m.drive is not None and not m.drive.slides else {}
     for name, at in ((name, at) for name, at in m.fixed.items() if name in link_marks.drawn_points(project.study.positions)):
         for axis, value in (("x", at.real), ("y", at.imag)):
             if not is_zero(value, float(m.crank.length)):
@@ -195,7 +197,8 @@ def _quantities(project: Project) -> Iterator[tuple[str, str]]:
         given = getattr(value, "step", value)  # one that a synthesis found has the letters of its step
         if value and getattr(given, "symbol", ""):
             # The other way along its line is no length.
-            yield f"{given.symbol}, {units['m' if n < len(lengths) else given.unit]}", number(abs(float(value)))
+            letters, unit = f"{given.symbol}{drawn.get(given.unit, '')}", units["m" if n < len(lengths) else given.unit]
+            yield f"{letters}, {unit}", number(abs(float(value)))
 
 
 MOST = 14
