@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 from tests.few import few
-from tmm_sheets import apart, catalogue, defects, files, kept, summary, terminal
+from tmm_sheets import apart, catalogue, defects, files, kept, output, summary, terminal
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare.cad import cad_file
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.living import page
 from tmm_sheets.optimising import wishes
-from tmm_sheets.output import batch, building, roster
+from tmm_sheets.output import batch, roster
 from tmm_sheets.task import edited_text, family_tables
 
 CAM = "lugansk/cam_flat"
@@ -233,7 +233,7 @@ def defect(desk, monkeypatch):
     """A defect in each of these, a file that shows it, and where others are kept."""
     Path("mine.toml").write_text(SCHEME, encoding="utf-8")
     monkeypatch.setattr(summary, "text", fall)
-    monkeypatch.setattr(building, "with_room", fall)
+    monkeypatch.setattr(output, "with_room", fall)
     monkeypatch.setattr(batch, "with_room", fall)
     monkeypatch.setenv(kept.FOLDER, "cache")
     return "mine.defect.txt, mine.defect.toml" if hasattr(os, "fork") else "mine.defect.txt"

@@ -54,7 +54,7 @@ RULES = {
     "backends": ("drawing", ""),
     "output": ("backends catalogue drawing explain project sheets task.title_entries", "task"),
     "output.batch": ("catalogue compare.measured living note output project task.title_entries", ""),
-    "output.roster": ("catalogue output project task.families task.family_folder task.letters", ""),
+    "output.roster": ("catalogue output project task.families task.family_folder task.letters task.variant", ""),
     "page": ("backends catalogue compare drawing living output project sheets task", ""),
     "note": ("backends construction drawing project record results sheets task.synthesis_refs task.units", "task"),
     "compare": ("drawing sheets", "construction project"),

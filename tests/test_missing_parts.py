@@ -1,6 +1,7 @@
 """A file that leaves tables out: what is there is read, solved, told and drawn; nothing empty stands on a sheet."""
 
 import json
+import re
 from math import cos, sin, sqrt
 
 import pytest
@@ -44,7 +45,9 @@ def test_every_command_on_it(name, tmp_path, capsys):
                   ["build", "--format", "svg", "-o", str(out)]):
         status = run([words[0], file, *words[1:]])
         captured = capsys.readouterr()
-        assert (status, captured.err) == (0, ""), words
+        # What a sheet leaves out is told; there is nothing else to be told of these.
+        left = [line for line in captured.err.splitlines() if not re.search("hodograph .* is left out|годограф .* не", line)]
+        assert (status, left) == (0, []), words
         assert captured.out
     drawn = output.with_room(variant.read(file)).sheets  # kinematics and forces get a sheet each where one is too small
     assert drawn in (tuple(sheets), ("kinematics", "forces", *sheets[1:]))

@@ -10,7 +10,8 @@ function makeHandle({ svg }, key, dragged, nudged) {
   handle.addEventListener("pointerdown", (event) => { spin(false); handle.setPointerCapture(event.pointerId); event.preventDefault(); });
   handle.addEventListener("pointermove", (event) => {
     if (!handle.hasPointerCapture(event.pointerId)) return;
-    const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+    const card = svg.getBoundingClientRect(), within = (x, least, most) => Math.min(Math.max(x, least + GRIP), most - GRIP); // beyond it nobody takes hold of it again
+    const p = new DOMPoint(within(event.clientX, card.left, card.right), within(event.clientY, card.top, card.bottom)).matrixTransform(svg.getScreenCTM().inverse());
     dragged([p.x, -p.y]);
   });
   handle.addEventListener("keydown", (event) => {

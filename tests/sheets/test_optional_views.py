@@ -80,7 +80,7 @@ def test_every_wheel_of_a_train_has_its_diameter_once(name):
     for line in lines:
         if "m·z" in line and line.startswith("d_"):
             module, teeth = (float(v.replace(",", ".")) for v in line.split(" = ")[2].split("·"))
-            assert module * teeth == pytest.approx(float(line.split(" = ")[3].replace(",", ".")), rel=1e-3)
+            assert module * teeth == pytest.approx(float(line.split(" = ")[3].removesuffix(" мм").replace(",", ".")), rel=1e-3)
 
 
 def test_the_next_smaller_size_is_taken_and_none_that_does_not_fit():

@@ -152,7 +152,7 @@ def test_into_the_part_beside_it():
 
 def test_labels_have_the_distance_between_views():
     near = Label(195 + 150j, "abc", 3.5, 1 + 0j, 3.0)
-    far = replace(near, gap=120.0)  # with room in the view it would stand there
+    far = near._replace(gap=120.0)  # with room in the view it would stand there
     for label, count in ((near, 0), (far, 1)):
         assert len(drawn(lambda canvas, label=label: canvas.label(label.anchor, label.text, label.away, 3.5, label.gap))) == count
     assert BESIDE > TOUCH

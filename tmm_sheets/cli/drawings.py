@@ -78,8 +78,10 @@ def run_compare(
 
     from tmm_sheets.api import compared
 
+    scheme = None
     if marks is not None or group is not None:
         from tmm_sheets.compare import group as whole
+
         scheme = None if marks is None else whole.read_scheme(marks)
     opened = open_project(project, corrected)
     folder = folder_of(opened.variant, output)

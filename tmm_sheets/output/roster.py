@@ -11,7 +11,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import catalogue, csv_tables, files, spelling
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
@@ -20,8 +20,10 @@ from tmm_sheets.project import Project
 from tmm_sheets.task import families
 from tmm_sheets.task.family_folder import FolderFamily
 from tmm_sheets.task.letters import title_text
-from tmm_sheets.task.variant import Variant
 from tmm_sheets.words import both, either, every, tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.task.variant import Variant
 
 # --- who is on the list ------------------------------------------------------------------------------------------------------
 

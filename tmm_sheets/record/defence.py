@@ -19,7 +19,7 @@ from tmm_sheets.drawing.paper import A1
 from tmm_sheets.drawing.placing import place
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.record.recording import book_of, unit
-from tmm_sheets.record.why import force_position, reasons
+from tmm_sheets.record.why import force_position, sentence
 from tmm_sheets.sheets import sheet
 from tmm_sheets.words import marked, tr
 
@@ -123,7 +123,7 @@ def _about_marks(project: Project, composed: Composed, book: StepIndex) -> Itera
                 k = places[at]
                 own = named.get((path, at), "") if role in ("vector", "dimension") else ""
                 name = _plain(own or getattr(composed.drawing.marks[k].by, "name", ""))
-                answer = (*reasons([*dict.fromkeys(parents(step)), step], at, book), *lengths.get(k, ()))
+                answer = (*(sentence(one, at, book) for one in dict.fromkeys([*parents(step), step])), *lengths.get(k, ()))
                 found[plan].append(Question(_view(composed, k), _place(composed.drawing.marks[k]), tr(text).format(
                     name=name or letter_of(step), position=at), answer))
         yield _in_turn(found.values())

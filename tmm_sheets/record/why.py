@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -59,19 +59,14 @@ def lines(project: Project, result: str) -> Iterator[str]:
     _ = told.value
     book = book_of(project)
     at = told.at[0] if told.at else force_position(project)
-    yield from reasons(with_ancestors([told.step]), at, book)
-    yield f"{result}{tell(_OF_PART[told.part])} = {_shown(told, at, book)}"
-
-
-def reasons(steps: Iterable[Step], at: str, book: StepIndex) -> Iterator[str]:
-    """A line for each of some steps at a position, before it those of the givens that no line had yet."""
     given: set[str] = set()
-    for step in steps:
+    for step in with_ancestors([told.step]):
         for arg in step.args:
             if isinstance(arg, GivenNumber | GivenPoint | Given) and arg.name not in given:
                 given.add(arg.name)
                 yield _given(arg, at, book, step)
         yield _line(step, at, book)
+    yield f"{result}{tell(_OF_PART[told.part])} = {_shown(told, at, book)}"
 
 
 def _no_part(project: Project, result: str, part: str) -> BadInput:
@@ -127,8 +122,13 @@ def _line(step: Step, at: str, book: StepIndex) -> str:
     name = book.id(step) if step in book else step.name
     value = value_at(step, k) if np.ndim(step.value) < 2 else step.value
     told = unit(step, plan) if plan is not None else step.rule.unit
-    sentence = protocol.sentence(step, k, float, plan.unit if plan is not None else "")
-    return f"{name}  {step.symbol or step.name} = {_number(value, told)}  {sentence}"
+    return f"{name}  {step.symbol or step.name} = {_number(value, told)}  {sentence(step, at, book)}"
+
+
+def sentence(step: Step, at: str, book: StepIndex) -> str:
+    """What is done in a step at a position, with its numbers."""
+    plan = book.plans.get(book.plan(step)) if step in book else None
+    return protocol.sentence(step, _index(step, at, book), float, plan.unit if plan is not None else "")
 
 
 def _shown(told: Reported, at: str, book: StepIndex) -> str:

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from tmm_sheets.construction.readable import MAIN
 
 from tests import project_files as files
+from tmm_sheets.construction.scale import MAIN
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Polyline
 from tmm_sheets.sheets.flywheel import enlarged

@@ -197,8 +197,8 @@ def _quantities(project: Project) -> Iterator[tuple[str, str]]:
         given = getattr(value, "step", value)  # one that a synthesis found has the letters of its step
         if value and getattr(given, "symbol", ""):
             # The other way along its line is no length.
-            letters, unit = f"{given.symbol}{drawn.get(given.unit, '')}", units["m" if n < len(lengths) else given.unit]
-            yield f"{letters}, {unit}", number(abs(float(value)))
+            unit = "m" if n < len(lengths) else given.unit
+            yield f"{given.symbol}{drawn.get(unit, '')}, {units[unit]}", number(abs(float(value)))
 
 
 MOST = 14
