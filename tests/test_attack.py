@@ -28,7 +28,7 @@ def test_nothing_falls_over(n):
 def test_no_door_falls_in(door, tmp_path, monkeypatch):
     """Some of the cases of ``python -m tests.attack``; those with a process of their own take long."""
     monkeypatch.chdir(tmp_path)
-    assert {entered(door, n) for n in range(1 if door in FAULTS else 30)} <= {"done", "refused"}
+    assert {entered(door, n) for n in range(1 if door in FAULTS else 20)} <= {"done", "refused"}
 
 
 @pytest.mark.parametrize(

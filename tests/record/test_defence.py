@@ -16,7 +16,7 @@ from tmm_sheets.record.defence import ASKED, defended
 @pytest.fixture(scope="module")
 def shaper():
     project = Project(catalogue.read("lugansk/shaper"))
-    found, problem = defended(project, ())
+    found, problem = defended(project, (1,))  # composed anew, with its steps
     assert problem is None
     return project, found
 
