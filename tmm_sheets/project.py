@@ -361,10 +361,6 @@ class Project:
             raise CannotBuild(
                 tell("a flywheel needs a technological force or moment"), tell("add [[force]] or [[moment]] to the project file")
             )
-        if not any(link.mass or link.inertia or link.pivot_inertia for link in self.mechanism.links.values()):
-            raise CannotBuild(
-                tell("a flywheel needs links with masses"), tell("add mass, centre and inertia to [[link]] of the project file")
-            )
         from tmm_sheets.methods.flywheel.wheel_methods import flywheel
 
         if self.cycle.swings:

@@ -129,7 +129,7 @@ def _put_linkage(project: Project, tree: dict[str, Any], asked: list[str], found
     }
     for name in asked:
         with _losing(lost, name):
-            tree[name] = _SECTIONS[name](project, study, chosen)
+            tree[name] = _section(project, study, name, chosen)
     there = [name for name in asked if name not in lost]
     if len(study.labels) > MANY:
         _at_once(study, tree, there)
@@ -264,32 +264,36 @@ NATURAL = {"difference_percent": 100.0, "pressure_angle": 1.0}
 """Natural magnitude of quantities that may be nothing but rounding throughout: percent, rad."""
 
 
-def _rows(table: dict[str, Any], prefix: str, alike: list[Any] | None = None) -> Iterable[str]:
-    """A line for each entry; ``alike`` are the rows of quantities of the same kind."""
+def _rows(table: dict[str, Any], prefix: str, alike: Sizes | None = None) -> Iterable[str]:
+    """A line for each entry; ``alike`` is the size of quantities of the same kind."""
     for key, value in table.items():
         if isinstance(value, dict):
             yield from _rows(value, f"{prefix}{key}.", _alike(table, key))
         else:
-            yield f"{prefix}{key} = {_short(_without_rounding(value, [NATURAL[key]] if key in NATURAL else alike or [value]))}"
+            yield f"{prefix}{key} = {_short(_without_rounding(key, value, alike))}"
 
 
-def _alike(table: dict[str, Any], key: str) -> list[Any] | None:
-    """Quantities of the same kind as those of ``table[key]``: its own rows; forces and moments are compared with all reactions."""
+def _alike(table: dict[str, Any], key: str) -> Sizes | None:
+    """Size of quantities of the kind of ``table[key]``: of its own rows; forces and moments are compared with all reactions."""
     forces = [table[k] for k in ("reactions", "couples", "balancing") if k in table]
     of = forces if forces and key != "arms" else [table[key]]
-    return [v for found in of for v in found.values() if isinstance(v, list)] or None
+    rows = [v for found in of for v in found.values() if isinstance(v, list)]
+    return _sizes(rows) if rows else None
 
 
-def _without_rounding(value: Any, alike: list[Any]) -> Any:
+def _sizes(rows: list[Any]) -> Sizes:
+    return Sizes([_largest(x) for x in v] if isinstance(v, list) else v for v in rows)
+
+
+def _without_rounding(key: str, value: Any, alike: Sizes | None) -> Any:
     """A row with zeros where its numbers are nothing but rounding beside those of the same kind."""
     if not (isinstance(value, list) and value and isinstance(value[0], float | list)):
         return value
-    sizes = [[_largest(x) for x in v] if isinstance(v, list) else v for v in alike]
 
     def cleaned(v: Any, kind: float) -> Any:
         return [cleaned(x, kind) for x in v] if isinstance(v, list) else clean(v, kind) if isinstance(v, float) else v
 
-    kind = Sizes(sizes)
+    kind = _sizes([NATURAL[key]]) if key in NATURAL else alike or _sizes([value])
     return [cleaned(v, kind.at(i)) for i, v in enumerate(value)]
 
 
@@ -350,26 +354,24 @@ def _all(study: Study, steps: Mapping[str, Step], part: Part = "") -> dict[str, 
     return {name: Spread(step, part, (), len(study.labels)) for name, step in steps.items()}
 
 
-def _moving(study: Study, some: dict[str, Mapping[str, Step]], **there: Mapping[str, Step]) -> dict[str, Any]:
-    """Steps by their names, without those of the frame; where ``there`` are some, these too."""
-    named = some | {key: steps for key, steps in there.items() if steps}
+_MOTION: dict[str, Callable[[Study], dict[str, Mapping[str, Step]]]] = {
+    "positions": lambda s: {"points": s.positions.points, "angles": s.positions.directions,
+                            "special": {name: special.step for name, special in s.positions.special.items()}},
+    "velocities": lambda s: {"points": s.velocities.points, "omega": s.velocities.omega, "sliding": s.sliding.velocities,
+                             "special": s.velocities.special},
+    "accelerations": lambda s: {"points": s.accelerations.points, "epsilon": s.accelerations.epsilon,
+                                "coriolis": s.sliding.coriolis, "special": s.accelerations.special},
+}
+"""Steps of the parts of a linkage that are told of points and links; of those at the end there may be none."""
+
+
+def _section(project: Project, study: Study, name: str, chosen: list[int]) -> dict[str, Any]:
+    """A part of the linkage in the tree: points and links without those of the frame."""
+    if name == "forces":
+        return _forces(project, study, chosen)
     return {key: _all(study, {name: step for name, step in steps.items() if name != study.mechanism.frame} if key in (
-        "omega", "epsilon") else steps, "angle" if key == "angles" else "") for key, steps in named.items()}
-
-
-def _positions(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
-    p = study.positions
-    return _moving(study, {"points": p.points, "angles": p.directions}, special={name: s.step for name, s in p.special.items()})
-
-
-def _velocities(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
-    v = study.velocities
-    return _moving(study, {"points": v.points, "omega": v.omega}, sliding=study.sliding.velocities, special=v.special)
-
-
-def _accelerations(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
-    a = study.accelerations
-    return _moving(study, {"points": a.points, "epsilon": a.epsilon}, coriolis=study.sliding.coriolis, special=a.special)
+        "omega", "epsilon") else steps, "angle" if key == "angles" else "") for key, steps in _MOTION[name](study).items()
+        if steps or key not in ("special", "sliding", "coriolis")}
 
 
 def _forces(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
@@ -419,11 +421,6 @@ def _condition(study: Study, asked: list[str], chosen: list[int]) -> dict[str, A
     if "forces" in found:
         found["forces"] = found["forces"][chosen]
     return found
-
-
-_SECTIONS: dict[str, Callable[[Project, Study, list[int]], dict[str, Any]]] = {
-    "positions": _positions, "velocities": _velocities, "accelerations": _accelerations, "forces": _forces,
-}  # fmt: skip
 
 
 def _flywheel(project: Project, scales: dict[str, Any]) -> dict[str, Any]:

@@ -61,8 +61,8 @@ def read(path: Path, hint: str = "") -> tuple[str, dict[str, Any], TomlLines]:
     return text, *parsed(text, str(path))
 
 
-def parsed(text: str, file: str) -> tuple[dict[str, Any], TomlLines]:
-    """The tables of a text and where its keys stand.
+def parsed(text: str, file: str, data: dict[str, Any] | None = None) -> tuple[dict[str, Any], TomlLines]:
+    """The tables of a text, those that were read of it already or else read now, and where its keys stand.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def parsed(text: str, file: str) -> tuple[dict[str, Any], TomlLines]:
     """
     try:
         check_keys(text)
-        data, lines = tomllib.loads(text), scan(text)
+        data, lines = tomllib.loads(text) if data is None else data, scan(text)
     except tomllib.TOMLDecodeError as e:
         raise BadInput(syntax(str(e), text, file)) from None
     except RecursionError:
@@ -103,7 +103,7 @@ def syntax(message: str, text: str, file: str) -> Problem:
     return Problem(said, file, line, hint=hint)
 
 
-_OF_PARSER = tuple((re.compile(re.escape(text).replace(r"\{what\}", "(?P<what>.*)")), text) for text in (
+_OF_PARSER = (
     marked("invalid statement"), marked("expected newline or end of document after a statement"), marked("expected {what}"),
     marked("found invalid character {what}"), marked("cannot declare {what} twice"), marked("cannot overwrite a value"),
     marked("expected ']' at the end of a table declaration"), marked("expected ']]' at the end of an array declaration"),
@@ -112,14 +112,14 @@ _OF_PARSER = tuple((re.compile(re.escape(text).replace(r"\{what\}", "(?P<what>.*
     marked("unclosed array"), marked("unclosed inline table"), marked("duplicate inline table key {what}"),
     marked("unescaped '\\' in a string"), marked("invalid hex value"), marked("escaped character is not a unicode scalar value"),
     marked("unterminated string"), marked("illegal character {what}"), marked("invalid date or datetime"), marked("invalid value"),
-))  # fmt: skip
+)  # fmt: skip
 """What Python's reader of TOML says."""
 
 
 def _of_parser(message: str) -> str:
     """A message of Python's reader of TOML in the reader's words; itself where it is a new one."""
-    for pattern, text in sorted(_OF_PARSER, key=lambda row: "{what}" in row[1]):
-        if match := pattern.fullmatch(message):
+    for text in sorted(_OF_PARSER, key=lambda text: "{what}" in text):
+        if match := re.fullmatch(re.escape(text).replace(r"\{what\}", "(?P<what>.*)"), message):
             return tell(text).format(**match.groupdict())
     return message
 
@@ -132,8 +132,8 @@ def problem(file: str, lines: TomlLines, path: KeyPath, message: str, hint: str 
 # --- values without their quotes ---------------------------------------------------------------------------------------
 
 
-_PAIR = re.compile(r"""(\s*[\w."'-]+\s*=\s*)(["']?[^"'\[\]{}#=]*?["']?)(\s*(?:#.*)?)""")
-_NUMBER = re.compile(r"([+-]?)(\d+(?:[ \u00a0]\d{3})*[.,]?\d*|[.,]\d+)")
+_PAIR = r"""(\s*[\w."'-]+\s*=\s*)(["']?[^"'\[\]{}#=]*?["']?)(\s*(?:#.*)?)"""
+_NUMBER = r"([+-]?)(\d+(?:[ \u00a0]\d{3})*[.,]?\d*|[.,]\d+)"
 MOST_PUT_RIGHT = 20
 """Lines that are put right; more are no slips."""
 LONGEST_PUT_RIGHT = 50_000
@@ -151,7 +151,7 @@ class BareValue(NamedTuple):
     @property
     def meant(self) -> tuple[str, ...]:
         """What may be meant, as TOML: a number with a point and, where it is a share, in per cent; else the same in quotes."""
-        match = _NUMBER.fullmatch(self.value)
+        match = re.fullmatch(_NUMBER, self.value)
         if match is None:
             return (f'"{self.value}"',)
         plain = re.sub(r"\s", "", match[2]).replace(",", ".")
@@ -165,13 +165,13 @@ class BareValue(NamedTuple):
         return "\n".join(lines)
 
 
-def quoted(text: str) -> tuple[str, dict[int, BareValue]]:
-    """The text with such values in quotes, and these by their lines; it may still be no TOML for other reasons."""
+def quoted(text: str) -> tuple[str, dict[int, BareValue], dict[str, Any] | None]:
+    """The text with such values in quotes, these by their lines, and its tables: None where it still is no TOML."""
     found: dict[int, BareValue] = {}
     while len(found) < MOST_PUT_RIGHT and len(text) < LONGEST_PUT_RIGHT:
         try:
             check_keys(text)
-            tomllib.loads(text)
+            return text, found, tomllib.loads(text)
         except tomllib.TOMLDecodeError as e:
             match = re.search(r"\(at line (\d+),", str(e))
             line = int(match[1]) if match else 0
@@ -182,14 +182,12 @@ def quoted(text: str) -> tuple[str, dict[int, BareValue]]:
             text = bare.put(text, f'"{bare.value}"')
         except (ValueError, RecursionError):  # told by who reads it
             break
-        else:
-            break
-    return text, found
+    return text, found, None
 
 
 def _bare(text: str, line: int) -> BareValue | None:
     lines = text.split("\n")
-    match = _PAIR.fullmatch(lines[line - 1].rstrip("\r")) if line <= len(lines) else None
+    match = re.fullmatch(_PAIR, lines[line - 1].rstrip("\r")) if line <= len(lines) else None
     value = match[2].strip("\"'") if match else ""
     if match is None or not value or "\\" in value or _reads(match[2]):
         return None

@@ -10,8 +10,10 @@ from tests.construction.gradients import gradient
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import expression, rules
 from tmm_sheets.construction.arithmetic import Curve
+from tmm_sheets.construction.equation import lettered
 from tmm_sheets.construction.error import Errors
-from tmm_sheets.construction.expression import Argument, lettered
+from tmm_sheets.construction.expression import Argument
+from tmm_sheets.construction.formula import Letters, Operand, of_tree
 from tmm_sheets.construction.step import Given, GivenNumber, GivenPoint, Plan, Reported, Rule, Step
 from tmm_sheets.methods.flywheel.flywheel import ACCELERATION
 from tmm_sheets.methods.flywheel.works import PLOT
@@ -82,11 +84,10 @@ X, Y = Argument(0), Argument(1)
 
 
 @pytest.mark.parametrize(("tree", "line"), [
-    (2 * np.pi * X, "2πx"), (X / 2 * Y, "x/2·y"), (2 * (X - Y), "2(x − y)"), (X - (Y - 1), "x − (y − 1)"),
-    (-(X + Y), "−(x + y)"), (X**2 * (3 - 2 * X), "x^2(3 − 2x)"), (np.sin(2 * X) ** 2, "sin^2(2x)"),
-    ((X + Y) ** 12, "(x + y)^{12}"), (X / (Y / 3), "x/(y/3)"), (0.5 * X, "1/2·x"), (X * -1.5, "x(−3/2)"),
-    (np.sqrt(X * Y), "sqrt(xy)"),
-    (0.1234567 * X, "0.1234567x"),
+    (2 * np.pi * X, "2π·x"), (X / 2 * Y, "x/2·y"), (2 * (X - Y), "2(x − y)"), (X - (Y - 1), "x − (y − 1)"),
+    (-(X + Y), "−(x + y)"), (X**2 * (3 - 2 * X), "x^{2}·(3 − 2x)"), (np.sin(2 * X) ** 2, "sin^{2}(2x)"),
+    (np.sin(X) ** 2, "sin^{2} x"), ((X + Y) ** 12, "(x + y)^{12}"), (X / (Y / 3), "x/(y/3)"), (0.5 * X, "0,5·x"),
+    (X * -1.5, "x·(−1,5)"), (np.sqrt(X * Y), "√(x·y)"), (np.pi**2 / 2 * np.cos(np.pi * X), "π^{2}/2·cos(π·x)"),
 ])  # fmt: skip
 def test_a_formula_in_one_line(tree, line):
-    assert lettered(tree, ["x", "y"]) == line
+    assert lettered(of_tree(tree, [Operand(Letters("x")), Operand(Letters("y"))])) == line

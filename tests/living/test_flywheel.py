@@ -8,7 +8,7 @@ import pytest
 from tests.few import few
 from tests.living import javascript
 from tests.methods.flywheel.as_steps import AsSteps
-from tmm_sheets.methods.flywheel.energy_mass import continuous_argmax
+from tmm_sheets.construction.arithmetic import continuous_argmax
 from tmm_sheets.methods.flywheel.wheel_methods import flywheel
 from tmm_sheets.task.schema import FlywheelTable
 

@@ -69,12 +69,12 @@ def test_commas_in_a_list():
 
 
 def test_the_rest_of_the_file_stays():
-    text, found = quoted("a = 1\nb = 0,5  # half, \"so\"\r\nc = 'x'\n")
-    assert tomllib.loads(text) == {"a": 1, "b": "0,5", "c": "x"}
+    text, found, tables = quoted("a = 1\nb = 0,5  # half, \"so\"\r\nc = 'x'\n")
+    assert tomllib.loads(text) == tables == {"a": 1, "b": "0,5", "c": "x"}
     assert '\nb = "0,5"  # half, "so"' in text
     assert {line: (bare.value, bare.meant) for line, bare in found.items()} == {2: ("0,5", ("0.5", '"50 %"'))}
 
 
 @pytest.mark.parametrize("text", ["a = [1,\n2", "[a\n", "a = \n", "a = {b = 1", 'a = "x\\q"', "= 1", "a", "a = 1\na = 2"])
 def test_what_is_no_such_slip(text):
-    assert quoted(text) == (text, {})
+    assert quoted(text) == (text, {}, None)

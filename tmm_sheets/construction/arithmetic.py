@@ -16,6 +16,7 @@ curve as an argument, so an error of a point goes on through it.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -352,3 +353,54 @@ def inner_slopes(h: Any, chord: Any) -> Any:
     w1, w2 = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(chord[:-1] * chord[1:] > 0, (w1 + w2) / (w1 / chord[:-1] + w2 / chord[1:]), 0.0)
+
+
+def root(f: Callable[[Floats], Floats], low: float, high: float) -> float:
+    """Zero of a continuous function (shape (n,) to shape (n,)) between two arguments where its signs differ, to the last bit.
+
+    Each step divides the interval into eight.
+    """
+    sign = float(np.sign(f(np.array([high]))[0]))
+    for _ in range(20):
+        x = np.linspace(low, high, 9)
+        if not x[0] < x[1] < x[-1]:
+            break
+        values = sign * f(x)
+        i = int(np.argmax(values > 0))
+        low, high = float(x[max(i - 1, 0)]), float(x[i])
+    return (low + high) / 2
+
+
+def continuous_argmax(f: Callable[[Floats], Floats], samples: Floats) -> float:
+    """Argument of the largest value of a continuous function between the first and the last of the ``samples``.
+
+    The samples must separate the humps; corners of ``f`` (where a force begins or ends) must be samples. The bracket
+    round the best sample is divided in 256 again and again until it is flat to rounding. The first and the last are
+    one angle of a cycle: which of them is greater, rounding tells.
+    """
+    values, last = f(samples), len(samples) - 1
+    k = int(np.argmax(values))
+    found = [_beside(f, samples, i, float(values[i])) for i in ((0, last) if k in (0, last) else (k,))]
+    return max(found, key=lambda one: one[1])[0]
+
+
+def _beside(f: Callable[[Floats], Floats], samples: Floats, k: int, value: float) -> tuple[float, float]:
+    """Argument of the largest value between the neighbours of a sample, and that value.
+
+    What differs by rounding is no neighbour: a border of an interval beside an angle of the grid.
+    """
+    best, near = samples[k], 1e-9 * (samples[-1] - samples[0])
+    before, behind = np.searchsorted(samples, best - near) - 1, np.searchsorted(samples, best + near, side="right")
+    low, high = samples[max(before, 0)], samples[min(behind, len(samples) - 1)]
+    while high - low > 1e-15 * (samples[-1] - samples[0]):
+        t = np.linspace(low, high, 257)
+        y = f(t)
+        j = int(np.argmax(y))
+        # A corner is met exactly by its sample only, so the best so far is kept.
+        if y[j] > value:
+            best, value = t[j], float(y[j])
+        if value - min(y[max(j - 1, 0)], y[min(j + 1, 256)]) <= 4e-15 * abs(value):
+            break
+        step = (high - low) / 256
+        low, high = max(best - step, low), min(best + step, high)
+    return float(best), value

@@ -13,9 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cache, reduce, wraps
-from math import pi
 from types import ModuleType
 from typing import Any, Literal, TypeAlias, TypeVar, cast
 
@@ -205,7 +203,11 @@ def _operated(tree: Operation, values: list[Any]) -> Any:
 
 
 def as_json(tree: Expression) -> Any:
-    """The tree as JSON: a number, ``{"arg": number}`` or ``{operation: operands}``."""
+    """The tree as JSON: a number, ``{"arg": number}`` or ``{operation: operands}``.
+
+    >>> as_json(2.0 * (1.0 - Argument(0)))
+    {'*': [2.0, {'-': [1.0, {'arg': 0}]}]}
+    """
     return fold(tree, lambda i: {"arg": i}, lambda x: {"complex": [x.real, x.imag]} if isinstance(x, complex) else x,
                 lambda operation, parts: {operation.name: parts})
 
@@ -218,60 +220,3 @@ def from_json(data: Any, known: Mapping[str, Callable[..., Any]]) -> Expression:
     if name == "arg":
         return Argument(of)
     return Constant(complex(*of)) if name == "complex" else Operation(name, tuple(from_json(x, known) for x in of), known.get(name))
-
-
-# --- typesetting --------------------------------------------------------------------------------------------------
-
-_ATOM = 4
-"""How tightly something binds that needs no parentheses: 1 a sum, 2 a product, 3 a power."""
-
-
-def lettered(tree: Expression, texts: Sequence[str], least: int = 0) -> str:
-    """The tree in one line of lettering, as on a sheet: 2πx, sin^2(πx), x^2(3 − 2x).
-
-    In parentheses where it binds less tightly than ``least``: 2 for a factor or what is subtracted, 1 behind a sign.
-
-    >>> lettered(2 * pi * (1 - Argument(0)), ["x"])
-    '2π(1 − x)'
-    """
-    text, binds = _lettered(tree, texts)
-    return text if binds >= least else f"({text})"
-
-
-def _lettered(tree: Expression, texts: Sequence[str]) -> tuple[str, int]:
-    """One line, and how tightly it binds; ratios bind as products."""
-    if isinstance(tree, Argument):
-        return texts[tree.index], _ATOM
-    if isinstance(tree, Constant):
-        return _ratio(tree.value)
-    assert isinstance(tree, Operation)
-    if tree.name == "*":
-        first, second = (lettered(part, texts, 2) for part in tree.parts)
-        # What is read as one product needs no sign: 2πx, 6x(1 − x); a ratio or a function begins or ends with one.
-        bare = tree.parts[1].parts[0] if isinstance(tree.parts[1], Operation) and tree.parts[1].name == "^" else tree.parts[1]
-        joined = "/" not in first and not first.endswith(")") and (second.startswith("(") or isinstance(bare, Argument))
-        return first + ("" if joined else "·") + second, 2
-    if tree.name == "/":
-        return f"{lettered(tree.parts[0], texts, 2)}/{lettered(tree.parts[1], texts, _ATOM)}", 2
-    if tree.name == "^":
-        base, power = tree.parts[0], lettered(tree.parts[1], texts)
-        raised = f"^{power}" if len(power) == 1 else f"^{{{power}}}"
-        if isinstance(base, Operation) and base.name in ("sin", "cos", "tan"):
-            return f"{base.name}{raised}({lettered(base.parts[0], texts)})", 3
-        return lettered(base, texts, _ATOM) + raised, 3
-    if tree.name in "+-":
-        sign, last = tree.name.replace("-", "−"), lettered(tree.parts[-1], texts, 2)
-        return (f"{lettered(tree.parts[0], texts)} {sign} {last}" if len(tree.parts) > 1 else sign + last), 1
-    return f"{tree.name}({', '.join(lettered(part, texts) for part in tree.parts)})", _ATOM
-
-
-def _ratio(value: float | complex) -> tuple[str, int]:
-    """A constant that is a small ratio, or one times a power of π: 1/2, 2π, π^2/2; another as its digits."""
-    for power, letter in enumerate(("", "π", "π^2")):
-        exact = Fraction(float(np.real(value)) / pi**power).limit_denominator(12)
-        if isinstance(value, complex) or abs(float(exact) * pi**power - value) > 1e-15 * abs(value):
-            continue
-        top = f"{abs(exact.numerator)}" if abs(exact.numerator) != 1 or not letter else ""
-        text = ("−" if exact < 0 else "") + top + letter + (f"/{exact.denominator}" if exact.denominator > 1 else "")
-        return text, 1 if exact < 0 else _ATOM if text == (top or letter) else 2
-    return f"{value:.12g}", 1 if np.real(value) < 0 else _ATOM

@@ -290,9 +290,9 @@ class Operand:
     negative: bool = False
 
 
-def of_tree(tree: expression.Expression, operands: Sequence[Operand]) -> Node:
-    """Formula of an expression with operands in the places of its arguments."""
-    return _walk(simplified(tree), operands, False)[0]
+def of_tree(tree: expression.Expression, operands: Sequence[Operand], least: int = 0) -> Node:
+    """Formula of an expression with operands in the places of its arguments; in brackets if it binds less than ``least``."""
+    return held(_walk(simplified(tree), operands, False), least)
 
 
 def simplified(tree: expression.Expression) -> expression.Expression:
@@ -419,8 +419,11 @@ Part = tuple[Node, int]
 
 
 def _power(parts: Sequence[Part]) -> Part:
-    base = Fenced("(", parts[0][0], ")") if isinstance(parts[0][0], Fraction) else held(parts[0], ATOM)
-    return Scripts(base, None, parts[1][0]), POWER
+    base, power = parts[0][0], parts[1][0]
+    if isinstance(base, FormulaRow) and isinstance(name := base.items[0], Words):  # sin²(πx)
+        space = (Words(" "),) * name.text.endswith(" ")
+        return FormulaRow((Scripts(Words(name.text.strip()), None, power), *space, *base.items[1:])), PRODUCT
+    return Scripts(Fenced("(", base, ")") if isinstance(base, Fraction) else held(parts[0], ATOM), None, power), POWER
 
 
 def _sum(parts: Sequence[Part]) -> Part:
@@ -498,6 +501,7 @@ _NAMED: tuple[tuple[float, Node, int], ...] = (
     (pi, Letters("π"), PRODUCT),
     (2 * pi, FormulaRow((Figures("2"), Letters("π"))), PRODUCT),
     (pi / 2, Fraction(Letters("π"), Figures("2")), ATOM),
+    (pi**2 / 2, Fraction(Scripts(Letters("π"), None, Figures("2")), Figures("2")), ATOM),
     (0.2, FormulaRow((Figures("1"), Sign("/"), Figures("5"))), ATOM),
 )
 """Numbers of formulas that are not written as such: of each the value, the node, and how tightly it binds."""

@@ -166,7 +166,7 @@ _COMMANDS = {"re": r"\mathrm{Re}", "im": r"\mathrm{Im}", "tg": r"\mathrm{tg}", "
 LATEX: Alphabet[str] = {
     Letters: lambda text: f"\\{_LETTERS[text]} " if text in _LETTERS else text,
     Figures: lambda text, source: text.replace("−", "-") if source else text.replace("−", "-").replace(",", "."),
-    Words: lambda text: _COMMANDS.get(text.strip(), rf"\mathrm{{{text.strip()}}}") + " ",
+    Words: lambda text: (_COMMANDS.get(text.strip(), rf"\mathrm{{{text.strip()}}}") if text.strip() else "") + " ",
     Sign: lambda text: str(_SIGNS.get(text, text)),
     FormulaRow: "".join,
     Scripts: lambda base, below, above: base + (f"_{{{below}}}" if below else "") + (f"^{{{above}}}" if above else ""),

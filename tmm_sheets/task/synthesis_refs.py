@@ -15,7 +15,7 @@ from typing import Any
 from tmm_sheets.toml_lines import Found, KeyPath, nodes
 from tmm_sheets.words import tell
 
-_WRITTEN = re.compile(r"(?P<sign>-?)\s*(?:(?P<part>[0-9]+(?:[.,][0-9]+)?)\s*[*·]?\s*)?synthesis(?:\s+(?P<name>\S+))?")
+_WRITTEN = r"(?P<sign>-?)\s*(?:(?P<part>[0-9]+(?:[.,][0-9]+)?)\s*[*·]?\s*)?synthesis(?:\s+(?P<name>\S+))?"
 
 PLACES: dict[tuple[str | int, str | int], str] = {("crank", "length"): "l_AB", ("group", "length"): "l_BC"}
 """Places whose length is plain without its name."""
@@ -25,7 +25,7 @@ def uses(data: dict[str, Any]) -> Iterator[tuple[KeyPath, re.Match[str]]]:
     """Paths of all lengths that are to be found by synthesis."""
     for path, text in nodes(data):
         of_lengths = path[0] not in ("project", "title_block", "note", "synthesis")
-        if of_lengths and isinstance(text, str) and (match := _WRITTEN.fullmatch(text.strip())):
+        if of_lengths and isinstance(text, str) and "synthesis" in text and (match := re.fullmatch(_WRITTEN, text.strip())):
             yield path, match
 
 

@@ -1,7 +1,7 @@
 """Numbers with their units, as people write them: ``"0.26 m"``, ``"260 мм"``, ``"72 rpm"``, ``"0,15 kg m2"``.
 
 A field fixes the quantity, so a unit is looked up among the few of that quantity; the result is always SI (m, rad,
-s, kg, N, N m, Pa ...). Conversion is exact up to the last rounding: decimal factors are rational numbers. Quantities
+s, kg, N, N m, Pa ...). Conversion is exact up to the last rounding: factors are quotients of decimals. Quantities
 as a task prints them (table ``[given]``) keep number and unit as they are written.
 """
 
@@ -12,7 +12,7 @@ import re
 import unicodedata
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
+from decimal import Context, Decimal
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -22,26 +22,25 @@ from tmm_sheets.words import marked, tell
 _NOT_THAT = marked("{expected}, not {given}; write for example {example}")
 _NOT_FINITE = marked("{expected}, not {given}; the number must be finite")
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+/0*[1-9][0-9]*(?=\s*$)|(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)(?:[eE][+-]?[0-9]{1,3}(?![0-9]))?)")
-_LONGEST = 60  # characters; an exact fraction of a longer text would only burn time
+_LONGEST = 60  # characters; no person writes a longer number
+_EXACT = Context(prec=2 * _LONGEST)  # products are exact, a quotient is a last rounding away from the double next to it
 
 
 class Refused(ValueError):
     """A value that is refused, in words that name the value itself."""
 
 
-@dataclass(frozen=True)
-class Factor:
-    """SI value of one unit: ``rational``, times pi when ``pi`` is set."""
+class Factor(NamedTuple):
+    """SI value of one unit: ``over`` / ``under``, times pi when ``pi`` is set."""
 
-    rational: Fraction
+    over: Decimal
+    under: Decimal
     pi: bool = False
 
     def si(self, number: str) -> float:
         """SI value of a decimal number, or a fraction such as 1/20, written in this unit."""
-        try:
-            value = float(Fraction(number) * self.rational)
-        except OverflowError:
-            return math.inf
+        whole, _, parts = number.partition("/")
+        value = float(_EXACT.divide(_EXACT.multiply(Decimal(whole), self.over), _EXACT.multiply(Decimal(parts or 1), self.under)))
         return value * math.pi if self.pi else value
 
 
@@ -58,9 +57,9 @@ class Quantity:
 def _quantity(name: str, expected: str, example: str, units: dict[str, str | tuple[str, str]]) -> Quantity:
     table = {}
     for names, factor in units.items():
-        rational, pi = (factor, False) if isinstance(factor, str) else (factor[0], True)
+        (over, _, under), pi = (factor if isinstance(factor, str) else factor[0]).partition("/"), not isinstance(factor, str)
         for unit in names.split(" | "):
-            table[_plain(unit)] = Factor(Fraction(rational), pi)
+            table[_plain(unit)] = Factor(Decimal(over), Decimal(under or 1), pi)
     return Quantity(name, expected, example, MappingProxyType(table))
 
 
@@ -223,7 +222,7 @@ def shown(value: Any) -> str:
 # --- quantities as a task prints them ----------------------------------------------------------------------------------
 
 
-_NAME = re.compile(r"([^\W\d_]+?)_?((?<=_)\w+|\d*)(′*)")
+_NAME = r"([^\W\d_]+?)_?((?<=_)\w+|\d*)(′*)"
 
 
 class Printed(NamedTuple):
@@ -251,7 +250,7 @@ def split_printed(text: str) -> tuple[str, str]:
 
 def symbol(name: str) -> str:
     """Lettering markup of a quantity as it is typed: l_OA, G2, theta, omega1; what is no letter with an index stands as it is."""
-    found = _NAME.fullmatch(name)
+    found = re.fullmatch(_NAME, name)
     if found is None:
         return name
     letter, index, primes = found.groups()

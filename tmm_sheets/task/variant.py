@@ -340,9 +340,9 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
     if len(text) > toml_file.LARGEST:
         raise BadInput(Problem(tell("{n} characters are no project file: expected {most} at most").format(
             n=len(text), most=toml_file.LARGEST), file))
-    readable, bare = quoted(text)
+    readable, bare, tables = quoted(text)
     try:
-        data, lines = toml_file.parsed(readable, file)
+        data, lines = toml_file.parsed(readable, file, tables)
     except BadInput as e:
         raise BadInput([*(_of_bare(one, file) for one in bare.values()), *e.problems]) from None
     data = freed(data)

@@ -13,9 +13,11 @@ from hypothesis import strategies as st
 from shapely import Polygon
 
 from tests.methods.cams.cam_cases import cam_data, centre_profile, sine_motion, told
+from tmm_sheets import catalogue
 from tmm_sheets.construction.protocol import sentences
-from tmm_sheets.errors import CannotBuild
+from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.methods.cams.cam_profile import cam
+from tmm_sheets.task import edited_text, variant
 
 MANUAL = Path(__file__).parents[2] / "manuals" / "cam_example_1.csv"
 VARIANTS = [{}, {"sense": "counter-clockwise"}, {"limit": "both"}, {"law": "cosine"}, {"law": "constant", "limit": "both"},
@@ -311,14 +313,17 @@ def test_protocol_says_lengths_in_millimetres():
     assert c.inversion.plan.check() is None
 
 
-@pytest.mark.parametrize(("changes", "said"), [
-    ({"pressure_angle": 0}, "pressure_angle"), ({"pressure_angle": 90}, "less than 90 deg"), ({"rise": 0}, "cam.rise"),
-    ({"fall": -5}, "cam.fall"), ({"upper_dwell": -1}, "upper_dwell"), ({"rise": 200, "fall": 160}, "395 deg"),
-    ({"stroke": 0}, "cam.stroke"), ({"stroke": float("nan")}, "cam.stroke"), ({"roller": 0}, "cam.roller"),
-    ({"law": "wrong"}, "sine"), ({"follower": "wrong"}, "translating roller"), ({"rise": float("nan")}, "cam.rise")])
-def test_what_cannot_be_built_is_said(changes, said):
-    with pytest.raises(CannotBuild, match=said):
-        cam(cam_data(**changes))
+@pytest.mark.parametrize(("key", "value", "said"), [
+    ("pressure_angle", "0 deg", "between 0 and 90 deg"), ("pressure_angle", "90 deg", "between 0 and 90 deg"),
+    ("rise", "0 deg", "greater than 0 deg"), ("fall", "-5 deg", "from 0 to 360"), ("upper_dwell", "-1 deg", "from 0 to 360"),
+    ("rise", "260 deg", "360 deg together"), ("stroke", "0 mm", "greater than zero"), ("stroke", "nan mm", "expected a length"),
+    ("roller", "0 mm", "greater than zero"), ("law", "wrong", '"sine"'), ("follower", "wrong", "translating roller"),
+    ("stroke", None, "needs it"), ("rise", "nan deg", "expected an angle")])
+def test_what_no_cam_can_have_the_reader_of_files_refuses(key, value, said):
+    """The synthesis may rely on it: it looks at none of this again."""
+    with pytest.raises(BadInput, match=said) as refused:
+        variant.parse(edited_text.changed(catalogue.read("lugansk/shaper").text, {f"cam.{key}": value}), "own.toml")
+    assert any(problem.field.partition(".")[0] == "cam" for problem in refused.value.problems)
 
 
 @given(st.floats(25, 170), st.floats(0, 60), st.floats(25, 125), st.floats(2, 80), st.floats(15, 60),

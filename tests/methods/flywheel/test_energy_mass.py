@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.methods.flywheel.running import speed
+from tmm_sheets.construction.arithmetic import continuous_argmax
 from tmm_sheets.construction.step import Plan
-from tmm_sheets.methods.flywheel.energy_mass import continuous_argmax, energy_mass_plan, limit, touched
+from tmm_sheets.methods.flywheel.energy_mass import energy_mass_plan, limit, touched
 from tmm_sheets.methods.flywheel.works import LAY_DOWN
 
 

@@ -9,10 +9,11 @@ import pytest
 from tests import project_files as files
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets import catalogue
+from tmm_sheets.construction.arithmetic import root
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import RPR, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, LinkPoint, StructuralGroup
-from tmm_sheets.methods.linkage.cycle import closed, dead_positions, root
+from tmm_sheets.methods.linkage.cycle import closed, dead_positions
 from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.project import Project

@@ -23,7 +23,7 @@ def value(text, **letters):
     """What a formula gives, as it is written: what stands side by side is multiplied."""
     known = {"S_{max}": "S", "φ_у": "rise", "φ_дс": "dwell", "φ_с": "fall", "φ": "phi", "π": "pi", "^": "**"}
     found = ""
-    text = re.sub(r"sin\^2(\([^()]*\))", r"(sin\1)^2", text)
+    text = re.sub(r"sin\^2(\([^()]*\))", r"(sin\1)^2", re.sub(r"\^\{(\d)\}", r"^\1", text))
     for token in TOKEN.findall(text.replace("−", "-").replace("·", "*").replace("[", "(").replace("]", ")")):
         side_by_side = found and (found[-1].isalnum() or found[-1] == ")") and (token[0].isalnum() or token[0] == "(")
         found += ("*" if side_by_side and not found.endswith(("sin", "cos")) else "") + known.get(token, token)
@@ -39,7 +39,7 @@ def test_formulas_are_those_of_the_law(name, dwell):
             head = lines[0].partition("x = ")[2]
             assert value(head, dwell=dwell, phi=float(phase.phi(x))) == pytest.approx(x)
             assert ("φ_дс" in head) == (dwell > 0 and phase is law.fall)
-            first = lines.index("x > 1/2:" if x > 0.5 else "x < 1/2:") + 1 if "x > 1/2:" in lines else 1
+            first = lines.index("x > 0,5:" if x > 0.5 else "x < 0,5:") + 1 if "x > 0,5:" in lines else 1
             for line, exact in zip(lines[first:first + 3], (phase.s, phase.ds, phase.dds), strict=True):
                 assert value(line.partition(" = ")[2], x=x) == pytest.approx(float(exact(x)), abs=1e-12), line
         assert lines[-1].endswith(" м")

@@ -12,10 +12,10 @@ import numpy as np
 from mpmath import mp
 
 from tmm_sheets import catalogue
+from tmm_sheets.construction.arithmetic import continuous_argmax
 from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.step import Plan
 from tmm_sheets.lab.bench.records import Bench
-from tmm_sheets.methods.flywheel.energy_mass import continuous_argmax
 from tmm_sheets.methods.flywheel.flywheel import Flywheel
 from tmm_sheets.methods.flywheel.wheel_methods import Mertsalov, Wittenbauer
 from tmm_sheets.methods.integration import Quadrature, integrate, ordinates, smooth
@@ -107,9 +107,6 @@ def _excess(bench: Bench) -> None:
     def f(x: Floats) -> Floats:
         return np.asarray(0.5 - np.sin(x) ** 2)
 
-    def at_nodes(n: int) -> float:
-        return float(np.ptp(_chords(f, _edges(n))))
-
     def on_curve(n: int) -> float:
         edges = _edges(n)
         ends = _chords(f, edges)
@@ -118,8 +115,8 @@ def _excess(bench: Bench) -> None:
     def converged(n: int) -> float:
         return _span(Quadrature(f, _edges(n), order=4), np.linspace(0, TURN, 721))
 
-    ways = (("extremes among the ends of the chords", at_nodes), ("smooth curve, extremes between", on_curve),
-            ("limit: 4 Gauss points for each interval", converged))
+    ways = (("extremes among the ends of the chords", lambda n: float(np.ptp(_chords(f, _edges(n))))),
+            ("smooth curve, extremes between", on_curve), ("limit: 4 Gauss points for each interval", converged))
     for name, way in ways:
         bench.rows(("excess work", name, "chords"), CHORDS, 24, way, lambda n, found: abs(found - 0.5) / 0.5)
 

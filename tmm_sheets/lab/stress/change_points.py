@@ -140,14 +140,6 @@ def _mirrored(b: Exact, d: Exact, of: Exact) -> Exact:
     return b + e * of.conjugate() / e.conjugate()
 
 
-def _crossed(b: Exact, d: Exact) -> Exact:
-    return _mirrored(b, d, d)
-
-
-def _opposite(b: Exact, d: Exact) -> Exact:
-    return _mirrored(b, d, exact(0) - b)
-
-
 def _at_rest(b: Exact, d: Exact) -> Exact:
     return exact(0)
 
@@ -212,7 +204,8 @@ def _linkage(rng: np.random.Generator, kite: bool) -> Passing:
     m = with_rocker(pivot, rods, side=rng.choice((1, -1)), follow=bool(rng.random() < 0.5),
                     at=at + float(rng.uniform(0.1, 3.0)) * float(rng.choice((1, -1))),
                     crank=replace(crank_of(rng, crank), length=crank))
-    ways: tuple[Way, Way] = (_opposite, _at_rest) if kite else (Exact.__add__, _crossed)
+    ways: tuple[Way, Way] = (
+        (lambda b, d: _mirrored(b, d, exact(0) - b), _at_rest) if kite else (Exact.__add__, lambda b, d: _mirrored(b, d, d)))
     return Passing(m, *ways, (at, at + pi))
 
 

@@ -202,10 +202,6 @@ def _block_on_rocker(s: State, g: StructuralGroup) -> Iterator[Residual]:
     yield "assembly side", np.maximum(0, -dot(u, r)) / s.reach
 
 
-def _block_reach(s: State, g: StructuralGroup) -> tuple[Any, Any]:
-    return np.abs(s.z[g.outer[1]] - s.z[g.outer[0]]) - g.offset, s.reach + g.offset
-
-
 def _block_in_slot(s: State, g: StructuralGroup) -> Iterator[Residual]:
     yield "closure on guides", np.abs(cross(s.u[g.links[0]], s.z[str(g.inner)] - s.z[g.outer[0]])) / s.reach
 
@@ -228,8 +224,12 @@ def _triangle(s: State, g: StructuralGroup) -> Iterator[Residual]:
 
 
 LOOPS: dict[GroupKind, Loop] = {
-    RRR: Loop(_two_rods, _two_rods_reach), RRP: Loop(_rod_on_guide, _rod_reach), RPR: Loop(_block_on_rocker, _block_reach),
-    PRP: Loop(lambda s, g: iter(())), RPP: Loop(_block_in_slot), TRIAD: Loop(_triangle),
+    RRR: Loop(_two_rods, _two_rods_reach),
+    RRP: Loop(_rod_on_guide, _rod_reach),
+    RPR: Loop(_block_on_rocker, lambda s, g: (np.abs(s.z[g.outer[1]] - s.z[g.outer[0]]) - g.offset, s.reach + g.offset)),
+    PRP: Loop(lambda s, g: iter(())),
+    RPP: Loop(_block_in_slot),
+    TRIAD: Loop(_triangle),
 }
 
 

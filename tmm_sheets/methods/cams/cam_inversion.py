@@ -13,7 +13,6 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import Floats, Points, Reals, Signs, primitive
 from tmm_sheets.construction.step import Helper, Plan, Reading, Rule, Step, StepTable, record
 from tmm_sheets.methods.cams.cam_displacement import Displacement, ExactMotion, in_phase
-from tmm_sheets.methods.cams.cam_laws import Phase
 from tmm_sheets.methods.cams.cam_zone import ALONG_ROCKER, TURNED, Cones, Zone, extreme, found_share, pieces_of
 from tmm_sheets.words import marked, tr
 
@@ -335,19 +334,13 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
     given = {"mass": mass[0], "arm": mass[-1], "length": length, "speed": speed, "factor": factor, "preload": preload,
              "stroke": law.stroke}
     record(plan, "m l ω", {} if len(mass) == 1 else OF_ROCKER, SPRING, given=given)
-    pieces, counts = [*pieces_of((law.rise, law.fall), 1e-12)], (513, 33, 33, 33, 33)
-    _, x, p = extreme(lambda x, p: -p.dds(x), pieces, counts)
+    pieces = [*pieces_of((law.rise, law.fall), 1e-12)]
+    _, x, p = extreme(lambda x, p: -p.dds(x), pieces)
     share = found_share(plan, exact.phases, p, x, "Q", tr("{symbol}'' is least").format(symbol=law.symbol))
     (dds,) = in_phase(plan, law, exact.phases, p, share, "Q", (2,))
     record(plan, "Q_max F_max F_0 s c", SPRING, given={**given, "dds": dds})
-    unit, biggest = float(plan["m"].value) * speed**2 * length, float(plan["Q_max"].value)
-
-    def ratio(x: Floats, p: Phase) -> Floats:
-        force = factor * biggest * (preload + (1 - preload) * p.s(x) / law.stroke)
-        inertia = -unit * p.dds(x)
-        return np.asarray(np.divide(force, inertia, out=np.full_like(force, np.inf), where=inertia > 1e-12 * biggest))
-
-    _, x, p = extreme(lambda x, p: -ratio(x, p), pieces, counts)
+    # Greatest is force of inertia over force of the spring, which is nowhere nothing.
+    _, x, p = extreme(lambda x, p: -p.dds(x) / (preload + (1 - preload) * p.s(x) / law.stroke), pieces)
     share = found_share(plan, exact.phases, p, x, "k", tr("the ratio F/Q where {symbol}'' < 0 is least").format(symbol=law.symbol))
     s, dds = in_phase(plan, law, exact.phases, p, share, "k", (0, 2))
     record(plan, "k_min k_F", SPRING, given={**given, "displacement": s, "dds": dds})

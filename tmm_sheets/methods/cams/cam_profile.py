@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, reduce
 from itertools import pairwise
-from math import degrees, floor, isfinite, log10, pi
+from math import floor, log10, pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -38,7 +38,7 @@ from tmm_sheets.methods.cams.cam_inversion import (
 )
 from tmm_sheets.methods.cams.cam_laws import LAWS, PHASES, Law, Phase, PositionFunction, ordinates_law, table_law
 from tmm_sheets.methods.cams.cam_motion import FollowerMotion, MotionScales, motion, motion_scales
-from tmm_sheets.methods.cams.cam_zone import Plate, Zone, found_share
+from tmm_sheets.methods.cams.cam_zone import Plate, Zone, extreme, found_share, pieces_of
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
@@ -58,23 +58,6 @@ DRAWN, OPENINGS = 0.05, (1.0, 0.5, 0.25, 0.125)
 """Error with which a radius of curvature by three points is taken; the distances of these that are tried, in parts of the usual."""
 DENSE = 128
 """Least number of parts of each phase in curves and in tables of results; the numbered positions are among them."""
-
-
-def _peak(f: Callable[[float], Any], lo: float, hi: float) -> float:
-    """Where a function with one maximum between ``lo`` and ``hi`` is largest, by the golden section."""
-    ratio = (5**0.5 - 1) / 2
-    a, b = hi - ratio * (hi - lo), lo + ratio * (hi - lo)
-    fa, fb = f(a), f(b)
-    for _ in range(50):
-        if fa > fb:
-            hi, b, fb = b, a, fa
-            a = hi - ratio * (hi - lo)
-            fa = f(a)
-        else:
-            lo, a, fa = a, b, fb
-            b = lo + ratio * (hi - lo)
-            fb = f(b)
-    return (lo + hi) / 2
 
 
 def _circle_centre(p: Points, q: Points, r: Any) -> Points:
@@ -434,20 +417,8 @@ class RollerCam(Cam):
         of = (*(z.plan[name] for name in names.split()), *((z.cones.turn,) if z.cones.pivot is not None else ()), self.right,
               self.apart if second else 0.0)
         known = [value_of(a) for a in of]
-        best: tuple[float, Phase, float, float, float] = (float("inf"), self.law.rise, 0.0, 0.0, 0.0)
-        for p in self.law.phases:
-
-            def bend(x: Reals, p: Phase = p) -> Any:
-                return curvature(p.s(x), p.ds(x), p.dds(x), *known)
-
-            for a, b in pairwise((0.0, *p.law.jumps, 1.0)):
-                # Where the law jumps, the curvature is read from inside the piece.
-                x = np.linspace(a + 1e-12, b - 1e-12, 257)
-                k = int(np.argmax(bend(x)))
-                at = _peak(bend, float(x[max(k - 1, 0)]), float(x[min(k + 1, 256)]))
-                if float(bend(at)) * best[0] > 1 + 1e-12:
-                    best = (1 / float(bend(at)), p, at, a, b)
-        _, p, at, a, b = best
+        _, at, p = extreme(lambda x, p: curvature(p.s(x), p.ds(x), p.dds(x), *known), pieces_of(self.law.phases, 1e-12))
+        a, b = next((a, b) for a, b in pairwise((0.0, *p.law.jumps, 1.0)) if a < at < b)
         tag = "ρ2" if second else "ρ"
         share = found_share(plan, self.exact.phases, p, at, tag,
                             tr("the curvature of the convex part of the pitch curve is greatest"))
@@ -654,21 +625,9 @@ def cam(data: CamTable) -> Cam:
     Raises
     ------
     CannotBuild
-        when the numbers allow no cam: at once for angles and lengths, for the axis and the roller when they are asked for.
+        when the diagram of a law allows no motion; for the axis and the roller when they are asked for.
     """
-    if data.follower not in FOLLOWERS:
-        raise CannotBuild(tell("cam.follower: expected one of {known}, not {given!r}").format(known=", ".join(FOLLOWERS),
-                                                                                           given=data.follower))
     follower, angular = FOLLOWERS[data.follower]
-    _check_phases(data)
-    _check_displacement(data, angular)
-    if follower is not FlatCam and not 1e-6 < (data.pressure_angle or 0.0) < pi / 2 - 1e-6:
-        raise CannotBuild(tell("cam.pressure_angle: expected a permitted pressure angle greater than 0 and less than 90 deg, not "
-                               "{angle:g} deg").format(angle=degrees(data.pressure_angle or 0.0)),
-                          tell("usual values are 30 deg for translating followers"))
-    if data.roller is not None and not data.roller > 0:
-        raise CannotBuild(tell("cam.roller: expected a radius greater than 0 mm, not {radius:g} mm").format(
-            radius=data.roller * 1e3), tell("leave it out to have it taken by both rules"))
     key, symbol = ("swing", "ψ") if angular else ("stroke", "S")
     fall_law = None if data.fall_law is None else _law(data, data.fall_law, "fall_table")
     rise, dwell, fall, stroke = (given(data, name) or 0.0 for name in ("rise", "upper_dwell", "fall", key))
@@ -676,40 +635,11 @@ def cam(data: CamTable) -> Cam:
     return follower(data, law)
 
 
-def _check_phases(data: CamTable) -> None:
-    """The phase angles: a rise and a fall there must be, and a turn of the cam holds all three."""
-    turn = data.rise + data.upper_dwell + data.fall
-    for name, value in (("rise", data.rise), ("fall", data.fall)):
-        if not value > 0:
-            raise CannotBuild(tell("cam.{key}: expected a phase angle greater than 0 deg, not {angle:g} deg").format(
-                key=name, angle=degrees(value)))
-    if not data.upper_dwell >= 0:
-        raise CannotBuild(tell("cam.upper_dwell: expected a phase angle of 0 deg or more, not {angle:g} deg").format(
-            angle=degrees(data.upper_dwell)))
-    if not turn <= 2 * pi * (1 + 1e-9):
-        raise CannotBuild(tell("cam: rise, upper_dwell and fall make {angle:g} deg together, more than a turn of the cam").format(
-            angle=degrees(turn)), tell("shorten a phase: what is left of 360 deg is the lower dwell"))
-
-
-def _check_displacement(data: CamTable, angular: bool) -> None:
-    """The stroke, or of a rocker arm and swing."""
-    for name, length in (("arm", data.arm),) if angular else (("stroke", data.stroke),):
-        if length is None or not (length > 0 and isfinite(length)):
-            raise CannotBuild(tell("cam.{key}: expected a length greater than 0 mm, not {length:g} mm").format(
-                key=name, length=(length or 0.0) * 1e3))
-    if angular and not 0 < (data.swing or 0.0) < pi / 2:
-        raise CannotBuild(tell("cam.swing: expected an angle greater than 0 and less than 90 deg, not {angle:g} deg").format(
-            angle=degrees(data.swing or 0.0)))
-
-
 def _law(data: CamTable, name: str, table: str) -> Law:
     if name == "displacements":
         return ordinates_law(*data.ordinates(fall=table == "fall_table"))
     if name == "table":
         return table_law(*data.diagram(table), key=f"cam.{table}")
-    if name not in LAWS:
-        raise CannotBuild(tell("cam.law: expected one of {known} or table, not {given!r}").format(known=", ".join(LAWS),
-                                                                                              given=name))
     return LAWS[name]
 
 

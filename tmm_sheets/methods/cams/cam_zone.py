@@ -15,11 +15,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
 from math import ceil, cos, degrees, pi, sin, tan
-from operator import itemgetter
 from typing import Any, Literal
 
 import numpy as np
 
+from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import Complex, Directions, Floats, Points, Reals, Signs, primitive
 from tmm_sheets.construction.step import Given, Helper, Plan, Reading, Rule, Step, StepTable, record
@@ -66,28 +66,18 @@ def _ray_direction(up: Any, alpha: Reals, side: Signs) -> Directions:
     return -up * (np.cos(alpha) - 1j * side * np.sin(alpha))
 
 
-def greatest(f: Callable[[Any], Any], counts: Iterable[int], ends: tuple[float, float] = (0.0, 1.0)) -> tuple[float, float]:
-    """Greatest value of a function of an array between ``ends``, and its place.
-
-    Found on grids of ``counts`` points, the first over all, each other one about the best point of the last.
-    """
-    for n in counts:
-        x = np.linspace(*ends, n)
-        y = f(x)
-        k = int(np.argmax(y))
-        ends = float(x[max(k - 1, 0)]), float(x[min(k + 1, n - 1)])
-    return float(y[k]), float(x[k])
-
-
 def pieces_of(phases: Iterable[Phase], inside: float) -> Iterator[tuple[Phase, float, float]]:
     """Smooth pieces of some phases, from share to share, each read a little ``inside`` its borders."""
     return ((p, a + inside, b - inside) for p in phases for a, b in pairwise((0.0, *p.law.jumps, 1.0)))
 
 
-def extreme(f: Callable[[Any, Phase], Any], pieces: Iterable[tuple[Phase, float, float]],
-            counts: Iterable[int]) -> tuple[float, float, Phase]:
-    """Greatest value of a function of share and phase in some pieces, its share and phase; ``counts`` as in :func:`greatest`."""
-    return max(((*greatest(lambda x, p=p: f(x, p), counts, (a, b)), p) for p, a, b in pieces), key=itemgetter(0))  # type: ignore[misc]
+def extreme(f: Callable[[Any, Phase], Any], pieces: Iterable[tuple[Phase, float, float]]) -> tuple[float, float, Phase]:
+    """Greatest value of a function of share and phase in some pieces, its share and phase.
+
+    Of values that differ by rounding, as in the rise and the fall that mirrors it, the first counts.
+    """
+    places = [(ar.continuous_argmax(lambda x, p=p: f(x, p), np.linspace(a, b, 257)), p) for p, a, b in pieces]  # type: ignore[misc]
+    return max(((float(f(x, p)), x, p) for x, p in places), key=lambda found: float(f"{found[0]:.11e}"))
 
 
 # --- cones ------------------------------------------------------------------------------------------------------------
@@ -158,7 +148,7 @@ class Cones:
         def beyond(x: Floats, p: Phase) -> Any:
             return ((o - self.tips(p, x)) * np.conjugate(self.ups(p, x) * outwards)).real
 
-        found = [self._ray(p, greatest(partial(beyond, p=p), (129, 33, 33, 33, 33, 33))[1], side) for p in self.phases]
+        found = [self._ray(p, ar.continuous_argmax(partial(beyond, p=p), np.linspace(0, 1, 129)), side) for p in self.phases]
         return max(found, key=lambda ray: ray.beyond(o))
 
     @cached_property
@@ -241,31 +231,15 @@ def _touched(cones: Cones, side: float) -> tuple[Phase, float]:
     its mirror image, is largest; the root of its derivative is found to the last bit. The start of the curve counts.
     """
     slope = tan(cones.alpha)
-    best, value = (cones.phases[0], 0.0), 0.0
-    for p in cones.phases:
-        x = np.linspace(0.0, 1.0, 257)
-        k = int(np.argmax(side * p.ds(x) - p.s(x) * slope))
-        lo, hi = float(x[max(k - 1, 0)]), float(x[min(k + 1, len(x) - 1)])
+    height, x, p = extreme(lambda x, p: side * p.ds(x) - p.s(x) * slope, ((p, 0.0, 1.0) for p in cones.phases))
 
-        def growth(x: float, p: Phase = p) -> float:
-            return float(side * p.dds(x) - p.ds(x) * slope)
+    def growth(x: Any) -> Any:
+        return side * p.dds(x) - p.ds(x) * slope
 
-        at = _root(growth, lo, hi) if growth(lo) > 0 > growth(hi) else float(x[k])
-        if (height := float(side * p.ds(at) - p.s(at) * slope)) > value:
-            best, value = (p, at), height
-    return best
-
-
-def _root(f: Callable[[float], float], lo: float, hi: float) -> float:
-    """Where a falling function crosses zero: bisection until no double lies between."""
-    while True:
-        middle = (lo + hi) / 2
-        if not lo < middle < hi:
-            return lo
-        if f(middle) > 0:
-            lo = middle
-        else:
-            hi = middle
+    if not height > 0:
+        return cones.phases[0], 0.0
+    lo, hi = max(x - 1 / 256, 0.0), min(x + 1 / 256, 1.0)
+    return p, ar.root(growth, lo, hi) if growth(lo) > 0 > growth(hi) else x
 
 
 @primitive("lower point")
@@ -699,7 +673,7 @@ def max_pressure_angles(z: Zone) -> Plan:
             return np.abs(np.angle((z.cones.tips(p, x) - apex) / z.cones.ups(p, x)))
 
         tag = f"α{k}"
-        share = found_share(plan, z.exact.phases, phase, greatest(angle, (65,) * 9)[1], tag,
+        share = found_share(plan, z.exact.phases, phase, ar.continuous_argmax(angle, np.linspace(0, 1, 65)), tag,
                             tr("the pressure angle is greatest"))
         s, ds = in_phase(plan, law, z.exact.phases, phase, share, tag, (0, 1))
         if z.cones.pivot is None:
@@ -786,7 +760,7 @@ def plate(law: PositionFunction, s: Any, dds: Any, base_radius: float | None, ex
     plan = Plan("cam-plate", tr("Main dimensions of the cam"), "m", law.labels)
     sums = plan.add("S+S''", SUM, s, dds)
     # Both values of S'' count where it jumps.
-    _, x, phase = extreme(lambda x, p: -(p.s(x) + p.dds(x)), pieces_of(law.phases, 1e-14), (257, 33, 33, 33, 33))
+    _, x, phase = extreme(lambda x, p: -(p.s(x) + p.dds(x)), pieces_of(law.phases, 1e-14))
     at = found_share(place, exact.phases, phase, x, "min", tr("the ordinate of S + S'' is least"))
     lowest = place.add("(S+S'')_min", LOWEST_SUM, *in_phase(place, law, exact.phases, phase, at, "min", (0, 2)))
     given = {"lowest": lowest, "stroke": law.stroke}

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.construction.arithmetic import continuous_argmax
 from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.rules import LINE_LINE, taken
 from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step
@@ -28,41 +29,6 @@ START = 0.02
 """Coefficient of non-uniformity where the search for one begins."""
 STOPS = 2.0
 """Coefficient of non-uniformity at which the slowest is at rest."""
-
-
-def continuous_argmax(f: Callable[[Floats], Floats], samples: Floats) -> float:
-    """Argument of the largest value of a continuous function between the first and the last of the ``samples``.
-
-    The samples must separate the humps; corners of ``f`` (where a force begins or ends) must be samples. The bracket
-    round the best sample is divided in 256 again and again until it is flat to rounding. The first and the last are
-    one angle of a cycle: which of them is greater, rounding tells.
-    """
-    values, last = f(samples), len(samples) - 1
-    k = int(np.argmax(values))
-    found = [_beside(f, samples, i, float(values[i])) for i in ((0, last) if k in (0, last) else (k,))]
-    return max(found, key=lambda one: one[1])[0]
-
-
-def _beside(f: Callable[[Floats], Floats], samples: Floats, k: int, value: float) -> tuple[float, float]:
-    """Argument of the largest value between the neighbours of a sample, and that value.
-
-    What differs by rounding is no neighbour: a border of an interval beside an angle of the grid.
-    """
-    best, near = samples[k], 1e-9 * (samples[-1] - samples[0])
-    before, behind = np.searchsorted(samples, best - near) - 1, np.searchsorted(samples, best + near, side="right")
-    low, high = samples[max(before, 0)], samples[min(behind, len(samples) - 1)]
-    while high - low > 1e-15 * (samples[-1] - samples[0]):
-        t = np.linspace(low, high, 257)
-        y = f(t)
-        j = int(np.argmax(y))
-        # A corner is met exactly by its sample only, so the best so far is kept.
-        if y[j] > value:
-            best, value = t[j], float(y[j])
-        if value - min(y[max(j - 1, 0)], y[min(j + 1, 256)]) <= 4e-15 * abs(value):
-            break
-        step = (high - low) / 256
-        low, high = max(best - step, low), min(best + step, high)
-    return float(best), value
 
 
 def touched(curve: Curve, angle: float, side: int, samples: Floats) -> float:

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.construction.arithmetic import continuous_argmax
 from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.rules import DISTANCE
 from tmm_sheets.construction.scale import MAIN, Scale, fit
@@ -29,7 +30,6 @@ from tmm_sheets.methods.flywheel.energy_mass import (
     ConvergedWheel,
     Running,
     Tangents,
-    continuous_argmax,
     energy_mass_plan,
     limit,
     limit_segment,

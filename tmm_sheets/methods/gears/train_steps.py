@@ -252,10 +252,6 @@ LETTERS = "ABCDEFGKLMNQRST"
 """Names of the points in the order of the power; O is the main axis, P the pole."""
 
 
-AT_RADIUS = Rule("point on a pitch circle", lambda side, d: side * 1j * (d / 2e3), ("number", "number"), "point",
-                 marked("At the height of the pitch radius {1}/2 mm from the main axis mark point {name}."), unit="m")
-AT_DISTANCE = Rule("point at a distance from the axis", lambda side, a: side * 1j * (a / 1e3), ("number", "number"), "point",
-                   marked("At the distance {1} mm from the main axis mark point {name}."), unit="m")
 VELOCITY_OF = Rule("velocity of a turning point", lambda n, p, o: n * pi / 30 * (np.imag(p) - np.imag(o)),
                    ("number", "point", "point"), "vector",
                    marked("Velocity of point {1} of the link that turns about {2} at {0} rpm, V = πn/30·{1}{2}: {name} = {value}."),
@@ -320,25 +316,20 @@ class SpeedPicture:
         name = f"O{self.train.link(link)}"
         if name not in self.plan:
             side, distance = 1.0 if axis.height > 0 else -1.0, self.train.kinematics[distance_of(self.train, axis.mesh)]
-            if (base := self.centre(axis.base)) is self.axis:
-                self.plan.add(name, AT_DISTANCE, side, distance)
-            else:
-                self.plan.add(name, FROM_AXIS, base, side, distance)
+            self.plan.add(name, FROM_AXIS, self.centre(axis.base), side, distance)
         return self.plan[name]
 
     def contact(self, m: Mesh) -> Step:
         """Pitch point of a mesh; that of a planet on a carrier over the main axis."""
         if (key := (m.central, m.planet)) not in self.points:
-            diameter, centre = self.train.pitch(m), self.centre(m.central)
             side = 1 if m.carrier or self.train.height(m.planet) > self.train.height(m.central) else -1
-            rule, base = (AT_RADIUS, ()) if centre is self.axis else (ON_PITCH_CIRCLE, (centre,))
-            self.points[key] = self.plan.add(next(self.letters), rule, *base, side, diameter)
+            self.points[key] = self.plan.add(next(self.letters), ON_PITCH_CIRCLE, self.centre(m.central), side, self.train.pitch(m))
         return self.points[key]
 
     def planet_axis(self, m: Mesh) -> Step:
         """Point of the planet's axis, over the main one."""
         if (key := (distance_of(self.train, m), "")) not in self.points:
-            self.points[key] = self.plan.add(next(self.letters), AT_DISTANCE, 1, self.train.kinematics[key[0]])
+            self.points[key] = self.plan.add(next(self.letters), FROM_AXIS, self.axis, 1, self.train.kinematics[key[0]])
         return self.points[key]
 
     def velocity_of(self, point: Step, link: str) -> Step:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.arithmetic import root
 from tmm_sheets.construction.expression import Floats, Reals, primitive
 from tmm_sheets.construction.step import Given, Plan, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
@@ -317,19 +318,3 @@ def over_cycle(runs: Sequence[Run], period: float, first: float = 0.0) -> tuple[
     shift, strokes = every[start].stroke, per_turn * turns
     ordered = every[start:] + [r.later(period) for r in every[:start]]
     return tuple(replace(r, stroke=(r.stroke - shift) % strokes) for r in ordered)
-
-
-def root(f: Callable[[Floats], Floats], low: float, high: float) -> float:
-    """Zero of a continuous function (shape (n,) to shape (n,)) between two arguments where its signs differ, to the last bit.
-
-    Each step divides the interval into eight.
-    """
-    sign = float(np.sign(f(np.array([high]))[0]))
-    for _ in range(20):
-        x = np.linspace(low, high, 9)
-        if not x[0] < x[1] < x[-1]:
-            break
-        values = sign * f(x)
-        i = int(np.argmax(values > 0))
-        low, high = float(x[max(i - 1, 0)]), float(x[i])
-    return (low + high) / 2

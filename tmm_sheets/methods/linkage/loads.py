@@ -18,13 +18,13 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from tmm_sheets.construction.arithmetic import Curve, inner_slopes
+from tmm_sheets.construction.arithmetic import Curve, inner_slopes, root
 from tmm_sheets.construction.expression import Directions, Floats, Points, Reals, Signs, primitive
 from tmm_sheets.construction.step import Given, Plan, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
-from tmm_sheets.methods.linkage.cycle import SWEEP, TURN, Cycle, Run, Strokes, in_strokes, over_cycle, root, runs_of
+from tmm_sheets.methods.linkage.cycle import SWEEP, TURN, Cycle, Run, Strokes, in_strokes, over_cycle, runs_of
 from tmm_sheets.methods.linkage.motion import Watched
 from tmm_sheets.methods.linkage.positions import Positions
 from tmm_sheets.words import marked, tell

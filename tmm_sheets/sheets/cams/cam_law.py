@@ -8,8 +8,9 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from tmm_sheets.construction.arithmetic import BY_PIECES
-from tmm_sheets.construction.equation import Quantity, equation
-from tmm_sheets.construction.expression import Expression, Operation, lettered, trace
+from tmm_sheets.construction.equation import Quantity, equation, lettered
+from tmm_sheets.construction.expression import Expression, Operation, trace
+from tmm_sheets.construction.formula import PRODUCT, Letters, Operand, of_tree
 from tmm_sheets.drawing.lettering import broken, letter
 from tmm_sheets.numbers import number
 from tmm_sheets.sheets.components.listed import Form, Formulas
@@ -73,13 +74,18 @@ def _written(law: Law) -> list[tuple[str, tuple[str, ...]]]:
     if len(trees) < len(law.forms):
         return []
     pieces = [_pieces_of(tree) for tree in trees]
-    return [(same[0][0], tuple(lettered(tree, ["x"], 2) for _, tree in same)) for same in zip(*pieces, strict=True)]
+    return [(same[0][0], tuple(_of_share(tree, PRODUCT) for _, tree in same)) for same in zip(*pieces, strict=True)]
+
+
+def _of_share(tree: Expression, least: int = 0) -> str:
+    """A formula of the share x of the phase, as a factor if it has to bind as ``least`` says."""
+    return lettered(of_tree(tree, [Operand(Letters("x"))], least))
 
 
 def _pieces_of(tree: Expression) -> list[tuple[str, Expression]]:
     """The formulas of the pieces of a phase, each with the shares where it holds; all of it has no such words."""
     if not isinstance(tree, Operation) or tree.name != BY_PIECES:
         return [("", tree)]
-    borders = [lettered(border, ["x"]) for border in tree.parts[2::2]]
+    borders = [_of_share(border) for border in tree.parts[2::2]]
     return list(zip([f"x < {borders[0]}", *(f"{a} < x < {b}" for a, b in pairwise(borders)), f"x > {borders[-1]}"],
                     tree.parts[1::2], strict=True))
