@@ -13,9 +13,9 @@ from collections.abc import Iterator
 from functools import cache
 from hashlib import blake2b
 from importlib.util import find_spec
+from operator import attrgetter
 from pathlib import Path
 from time import time_ns
-from typing import Any
 
 from tmm_sheets import kept
 from tmm_sheets.resources import template
@@ -32,8 +32,7 @@ def fingerprint(*parts: str | bytes) -> str:
     digest = blake2b(digest_size=16)
     for part in parts:
         data = part.encode() if isinstance(part, str) else part
-        digest.update(len(data).to_bytes(8, "big"))
-        digest.update(data)
+        digest.update(len(data).to_bytes(8, "big") + data)
     return digest.hexdigest()
 
 
@@ -49,43 +48,43 @@ def maker() -> str:
 
 @cache
 def _fingerprints() -> tuple[str, str]:
-    there, latest = _looked_at()
-    name = fingerprint("program", "\n".join(there))
+    files = list(_files())
+    stats = [entry.stat() for entry in files]
+    libraries = [spec.origin for name in LIBRARIES if (spec := find_spec(name)) is not None and spec.origin]
+    looked_at = [f"{entry.path} {stat.st_size} {stat.st_mtime_ns}" for entry, stat in zip(files, stats, strict=True)]
+    looked_at += [f"{path} {stat.st_size} {stat.st_mtime_ns}" for path in libraries if (stat := os.stat(path))]
+    name = fingerprint("program", "\n".join((sys.version, *looked_at)))
     if known := kept.taken(kept.read(name), lambda tree: (str(tree[0]), str(tree[1]))):
         return known
-    from importlib.metadata import version
-
-    own = fingerprint(__version__, *(part for path in _files() for part in (os.path.basename(path), Path(path).read_bytes())))
-    whole = fingerprint(own, sys.version, *(f"{name} {version(name)}" for name in LIBRARIES))
-    if time_ns() - latest > SETTLED:
+    own = fingerprint(__version__, *(part for entry in files for part in (entry.name, _content(entry.path))))
+    whole = fingerprint(own, sys.version, *(f"{name} {_version_of(name)}" for name in LIBRARIES))
+    if time_ns() - max(stat.st_mtime_ns for stat in stats) > SETTLED:
         kept.write(name, json.dumps([own, whole]).encode())
     return own, whole
 
 
-def _files() -> list[str]:
-    """Paths of sources and templates, in a fixed order."""
-    own, templates = (sorted(entry.path for entry in _walk(str(folder))) for folder in (Path(__file__).parent, template("")))
-    return [*(path for path in own if path.endswith(".py") and not path.startswith(str(template("")))), *templates]
+def _version_of(name: str) -> str:
+    if name in sys.modules:
+        return str(sys.modules[name].__version__)
+    from importlib.metadata import version
+
+    return version(name)
 
 
-def _looked_at() -> tuple[list[str], int]:
-    """Name, size and date of every file, without reading any; and the latest date, ns."""
-    found, latest = [sys.version], 0
-    for folder in (Path(__file__).parent, template("")):
-        for entry in _walk(str(folder)):
-            stat = entry.stat()
-            latest = max(latest, stat.st_mtime_ns)
-            found.append(f"{entry.path} {stat.st_size} {stat.st_mtime_ns}")
-    for library in LIBRARIES:
-        spec = find_spec(library)
-        path = spec.origin if spec is not None else None
-        if path:
-            stat = os.stat(path)
-            found.append(f"{path} {stat.st_size} {stat.st_mtime_ns}")
-    return sorted(found), latest
+def _content(path: str) -> bytes:
+    with open(path, "rb") as file:
+        return file.read()
 
 
-def _walk(folder: str) -> Iterator[os.DirEntry[Any]]:
+def _files() -> list[os.DirEntry[str]]:
+    """Sources, and templates, in a fixed order."""
+    inside = str(template(""))
+    sources = [entry for entry in _walk(str(Path(__file__).parent)) if entry.path.endswith(".py")]
+    own = [entry for entry in sources if not entry.path.startswith(inside)]
+    return [entry for some in (own, _walk(inside)) for entry in sorted(some, key=attrgetter("path"))]
+
+
+def _walk(folder: str) -> Iterator[os.DirEntry[str]]:
     """The files below a folder that may be sources or templates."""
     with os.scandir(folder) as entries:
         for entry in entries:

@@ -14,6 +14,7 @@ import re
 import struct
 import zlib
 from cmath import phase
+from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from functools import cache, lru_cache
 from io import StringIO
@@ -63,19 +64,18 @@ class LiveSheet:
     def __init__(self, drawing: Drawing, frame: DxfFrame, style: str, handles: Iterator[int]) -> None:
         self.marks, self.frame, self.style, self.handles = drawing.marks, frame, style, handles
         self.parts = SheetParts()
-        self.found: dict[int, list[int]] = {}  # handles in model space by the first mark they stand for
-        self.places: dict[int, int] = {}  # of the entities with these handles
+        self.found = defaultdict[int, list[int]](list)  # handles in model space by the first mark they stand for
+        self.entities: dict[int, str] = {}  # by their handles
         # Two lines make no angle of more than half a turn, and LibreCAD knows no other dimensions of angles.
         dimensions = [d for d in drawing.dimensions if (d.kind != "angle" or _turned(d) < pi) and (style == COMMON or _along(d))]
-        wholes: dict[int, Form | Dimension] = {d.first: d for d in dimensions}
-        wholes.update({form.first: form for form in drawing.forms})
+        wholes: dict[int, Form | Dimension] = {d.first: d for d in dimensions} | {form.first: form for form in drawing.forms}
         lettered = {k for d in dimensions for k in range(*d.label)}
         i = 0
         while i < len(self.marks):
             whole = wholes.get(i)
             if whole is None:
                 if i not in lettered:
-                    self._add(i, self._marks(self.marks[i : i + 1], frame.owner))
+                    self._add(i, self._marks((self.marks[i],), frame.owner))
                 i += 1
                 continue
             if isinstance(whole, Form):
@@ -84,14 +84,13 @@ class LiveSheet:
                 self._dimension(whole)
             i = max(whole.end, i + 1)
         for view in drawing.views:
-            self._group(view.name, [h for a, b in view.spans for k in range(a, b) for h in self.found.get(k, ())])
+            self._group(view.name, [h for a, b in view.spans for k in range(a, b) if k in self.found for h in self.found[k]])
+        self.parts.entities += self.entities.values()
 
     def _add(self, mark: int, made: list[tuple[int, str]]) -> None:
         """Add entities with their handles to model space."""
-        self.found.setdefault(mark, []).extend([handle for handle, _ in made])
-        for handle, text in made:
-            self.places[handle] = len(self.parts.entities)
-            self.parts.entities.append(text)
+        self.found[mark] += [handle for handle, _ in made]
+        self.entities.update(made)
 
     def _marks(self, marks: tuple[Mark, ...], owner: str) -> list[tuple[int, str]]:
         """Entities of some marks."""
@@ -110,7 +109,7 @@ class LiveSheet:
 
     def _text(self, mark: Text, owner: str, on: str, more: str = "") -> Iterator[tuple[int, str]]:
         """A run of letters as TEXT; letters missing from the font of the style are drawn."""
-        for part in (lacking_in_common() if self.style == COMMON else WHOLE).finditer(mark.text):
+        for part in (_in_common(mark.text) if self.style == COMMON else WHOLE).finditer(mark.text):
             run = mark if part[0] == mark.text else mark._replace(
                 at=mark.at + _direction(mark.angle) * advance(mark.text[: part.start()], mark.height) * mark.wide, text=part[0])
             handle = next(self.handles)
@@ -167,26 +166,21 @@ class LiveSheet:
                 + f"0\nSEQEND\n5\n{next(self.handles):X}\n330\n{insert:X}\n100\nAcDbEntity\n8\nFRAME\n")
         self._add(form.first, [(insert, text)])
         for f in form.fields:
-            if value := self._value(f):
-                wide = self._wide(f)
-                left = f.at - _direction(f.angle) * _length(value, f.height) * wide / 2
+            value, wide, left = self._written(f)
+            if value:
                 run = Text(left, value, f.height, f.angle, wide=wide)
                 self._add(form.first, list(self._text(run, owner, TEXT_LAYER, HIDDEN)))
 
-    def _value(self, f: FormField) -> str:
-        """What stands in a field."""
-        return "".join(mark.text for mark in self.marks[f.first : f.end] if isinstance(mark, Text))
-
-    def _wide(self, f: FormField) -> float:
-        """How wide the letters in a field are."""
-        return next((mark.wide for mark in self.marks[f.first : f.end] if isinstance(mark, Text)), 1.0)
+    def _written(self, f: FormField) -> tuple[str, float, complex]:
+        """What stands in a field, how wide its letters are, and the left end of its baseline."""
+        texts = [mark for mark in self.marks[f.first:f.end] if isinstance(mark, Text)]
+        value, wide = "".join([mark.text for mark in texts]), texts[0].wide if texts else 1.0
+        return value, wide, f.at - _direction(f.angle) * _length(value, f.height) * wide / 2
 
     def _attribute(self, kind: str, f: FormField, owner: str) -> str:
-        tag, value = f.name.upper(), self._value(f)
+        tag, (value, wide, left) = f.name.upper(), self._written(f)
         prompt = f"3\n{f.name.replace('_', ' ')}\n" if kind == "ATTDEF" else ""
-        wide = self._wide(f)
         # About the middle of its baseline; the left end is told too, as a matter of form.
-        left = f.at - _direction(f.angle) * _length(value, f.height) * wide / 2
         angle = f"50\n{short(degrees(f.angle) % 360)}\n" if f.angle else ""
         letters = (f"{place(10, left)}40\n{f.height:g}\n1\n{_escaped(value)}\n{angle}{_width(wide)}7\n{self.style}\n72\n1\n"
                    f"{place(11, f.at)}")
@@ -201,19 +195,24 @@ class LiveSheet:
         self.parts.grouped.append(f"3\n{name}\n350\n{group}\n")
         members = "".join([f"340\n{handle:X}\n" for handle in handles])
         for handle in handles:
-            n, own = self.places[handle], f"5\n{handle:X}\n"
+            own = f"5\n{handle:X}\n"
             told = f"{own}102\n{{ACAD_REACTORS\n330\n{group}\n102\n}}\n"
-            self.parts.entities[n] = self.parts.entities[n].replace(own, told, 1)
+            self.entities[handle] = self.entities[handle].replace(own, told, 1)
         # Not selectable: a click takes one line, not the view; by its name the group takes all of it.
         self.parts.groups.append(f"0\nGROUP\n5\n{group}\n330\n{self.frame.groups}\n100\nAcDbGroup\n300\n{name}\n70\n0\n71\n0\n{members}")
 
 
 @cache
-def lacking_in_common() -> re.Pattern[str]:
-    """Pattern of the runs of a text; each letter missing from the common font is a run "drawn"."""
+def letters_in_common() -> frozenset[str]:
+    """Letters of the common font, and what is left out of a text for it."""
     text = template(f"fonts/{COMMON}.lff").read_text(encoding="utf-8")
-    known = "".join(re.escape(chr(int(code, 16))) for code in re.findall(r"^\[#?([0-9a-fA-F]+)\]", text, re.M)) + BAR
-    return re.compile(rf"(?P<drawn>[^\s{known}])|[{known}](?:[\s{known}]*[{known}])?")
+    return frozenset([BAR, *(chr(int(code, 16)) for code in re.findall(r"^\[#?([0-9a-fA-F]+)\]", text, re.M))])
+
+
+def _in_common(text: str) -> re.Pattern[str]:
+    """Pattern of the runs of a text; each letter missing from the common font is a run "drawn"."""
+    lacking = "".join([re.escape(c) for c in {*text} - letters_in_common() if not c.isspace()])
+    return re.compile(rf"(?P<drawn>[{lacking}])|[^\s{lacking}](?:[^{lacking}]*[^\s{lacking}])?") if lacking else WHOLE
 
 
 def clean(name: str) -> str:

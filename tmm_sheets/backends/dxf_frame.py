@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tmm_sheets.drawing.lettering import PEN, glyph, widened
-from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Text
+from tmm_sheets.drawing.marks import Arc, Box, Fill, Line, Mark, Points, Polyline, Text, coordinates
 from tmm_sheets.drawing.styles import layers, line_type, roles
 
 COMMON, OWN = "lc_opengost-br", "tmm_sheets_b"
@@ -123,20 +123,21 @@ def entity(mark: Line | Arc | Polyline | Fill, handle: int, owner: str, layer: s
            solid: bool = False) -> str:
     """A mark as an entity; ``dashed``: of a line type with a pattern; ``solid``: continuous on any layer."""
     plain = "6\nContinuous\n" if solid else ""
-    if isinstance(mark, Line):
-        return f"0\nLINE\n5\n{handle:X}\n{head('AcDbLine', owner, layer, plain)}{flat(10, mark.a)}{flat(11, mark.b)}"
-    if isinstance(mark, Arc):
-        whole = mark.end - mark.start > 2 * pi - 1e-9
-        text = (f"0\n{'CIRCLE' if whole else 'ARC'}\n5\n{handle:X}\n{head('AcDbCircle', owner, layer, plain)}"
-                f"{place(10, mark.centre)}40\n{short(mark.radius)}\n")
-        if not whole:
-            text += f"100\nAcDbArc\n50\n{short(degrees(mark.start) % 360, 6)}\n51\n{short(degrees(mark.end) % 360, 6)}\n"
-        return text
+    match mark:
+        case Line():
+            return f"0\nLINE\n5\n{handle:X}\n{head('AcDbLine', owner, layer, plain)}{flat(10, mark.a)}{flat(11, mark.b)}"
+        case Arc():
+            whole = mark.end - mark.start > 2 * pi - 1e-9
+            text = (f"0\n{'CIRCLE' if whole else 'ARC'}\n5\n{handle:X}\n{head('AcDbCircle', owner, layer, plain)}"
+                    f"{place(10, mark.centre)}40\n{short(mark.radius)}\n")
+            if not whole:
+                text += f"100\nAcDbArc\n50\n{short(degrees(mark.start) % 360, 6)}\n51\n{short(degrees(mark.end) % 360, 6)}\n"
+            return text
+        case Polyline():
+            n, flags = len(mark.points), int(mark.closed) + (ALONG if dashed else 0)
+            return (f"0\nLWPOLYLINE\n5\n{handle:X}\n{head('AcDbPolyline', owner, layer, plain)}90\n{n}\n70\n{flags}\n"
+                    f"{_vertices(n) % tuple(coordinates(mark.points))}")
     n = len(mark.points)
-    if isinstance(mark, Polyline):
-        flags = int(mark.closed) + (ALONG if dashed else 0)
-        return (f"0\nLWPOLYLINE\n5\n{handle:X}\n{head('AcDbPolyline', owner, layer, plain)}90\n{n}\n70\n{flags}\n"
-                f"{_vertices(n) % _xy(mark.points)}")
     # Some programs draw the outline of a filled area too, and with the width of the layer it would grow.
     thin = f"{plain}370\n0\n"
     if n in (3, 4):
@@ -145,16 +146,12 @@ def entity(mark: Line | Arc | Polyline | Fill, handle: int, owner: str, layer: s
                 f"{''.join(place(10 + i, z) for i, z in enumerate(corners))}")
     return (f"0\nHATCH\n5\n{handle:X}\n{head('AcDbHatch', owner, layer, thin)}10\n0\n20\n0\n30\n0\n210\n0\n220\n0\n230\n1\n"
             f"2\nSOLID\n70\n1\n71\n0\n91\n1\n92\n3\n72\n0\n73\n1\n93\n{n}\n"
-            f"{_vertices(n) % _xy(mark.points)}97\n0\n75\n0\n76\n1\n98\n0\n")
+            f"{_vertices(n) % tuple(coordinates(mark.points))}97\n0\n75\n0\n76\n1\n98\n0\n")
 
 
 @cache
 def _vertices(n: int) -> str:
     return "10\n%.4f\n20\n%.4f\n" * n
-
-
-def _xy(points: Points) -> tuple[float, ...]:
-    return tuple(np.column_stack((points.real, points.imag)).ravel().tolist())
 
 
 def letter_strokes(texts: Iterable[Text], owner: str, layer: str, handles: Iterator[int]) -> str:
@@ -188,20 +185,21 @@ def letter_strokes(texts: Iterable[Text], owner: str, layer: str, handles: Itera
     form = [f"0\nLWPOLYLINE\n5\n{handle:X}\n{start}90\n{n}\n70\n0\n{_vertices(n)}"
             for start, n, handle in zip(heads, counts, handles, strict=False)]
     # One formatting of all numbers: three times quicker than one of each stroke.
-    return "".join(form) % _xy(points)
+    return "".join(form) % tuple(coordinates(points))
 
 
 def extents(marks: Iterable[Mark]) -> tuple[float, float, float, float]:
     """Bounding box x0, y0, x1, y1 of the lines of the marks, mm; zeros if there are none."""
     found: list[complex] = []
     for mark in marks:
-        if isinstance(mark, Line):
-            found += (mark.a, mark.b)
-        elif isinstance(mark, Arc):
-            found += _reach(mark)
-        elif isinstance(mark, Polyline | Fill) and len(mark.points):
-            xs, ys = mark.points.real, mark.points.imag
-            found += (complex(xs.min(), ys.min()), complex(xs.max(), ys.max()))
+        match mark:
+            case Line():
+                found += mark.a, mark.b
+            case Arc():
+                found += _reach(mark)
+            case Polyline() | Fill() if len(mark.points):
+                x0, y0, x1, y1 = Box.around(mark.points)
+                found += complex(x0, y0), complex(x1, y1)
     if not found:
         return (0.0, 0.0, 0.0, 0.0)
     x, y = [z.real for z in found], [z.imag for z in found]

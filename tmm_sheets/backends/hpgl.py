@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -76,7 +77,6 @@ def _places(steps: Iterable[Step]) -> str:
 _WRAPPER = re.compile(r"@PJL[^\n]*\n|\x1b%-12345X|\x1b%-?\d+[AB]")
 _COMMAND = re.compile(r"([A-Za-z]{2})([-+.,\d\s]*);?\s*")
 _NUMBER = re.compile(r"[-+]?\d*\.?\d+")
-_SILENT = ("BP", "LA", "VS", "FP", "PG")  # do not move ink; an area is recorded when it is closed
 UNKNOWN_PEN = 0.3  # mm
 
 
@@ -101,77 +101,45 @@ def read(data: bytes, plotter: Plotter) -> PlotPicture:
     ValueError
         When it is not HPGL, or holds a command that this program does not write; the message names command and place.
     """
-    reader = _PlotReader({pen.number: pen.width for pen in plotter.pens})
+    widths, plot = {pen.number: pen.width for pen in plotter.pens}, PlotPicture()
+    path, width, area, at = [0j], UNKNOWN_PEN, False, 0
+    unknown = tell("'{text}' at character {at} is not a command that can be shown")
     text = _WRAPPER.sub("", data.decode("latin-1")).strip()
-    at = 0
     while at < len(text):
         found = _COMMAND.match(text, at)
-        name = found[1].upper() if found else ""
-        if found is None or not (name in _SILENT or hasattr(reader, name)):
-            raise ValueError(
-                tell("'{text}' at character {at} is not a command that can be shown").format(text=text[at : at + 12], at=at)
-            )
-        if name not in _SILENT:
-            numbers = [float(v) for v in _NUMBER.findall(found[2])]
-            try:
-                getattr(reader, name)(numbers)
-            except (IndexError, ValueError):
-                raise ValueError(
-                    tell("'{text}' at character {at}: a number is missing").format(text=found[0].strip()[:40], at=at)
-                ) from None
+        if found is None:
+            raise ValueError(unknown.format(text=text[at:at + 12], at=at))
+        name, numbers = found[1].upper(), [float(v) for v in _NUMBER.findall(found[2])]
+        if len(numbers) < {"PW": 1, "PS": 2}.get(name, 0) or (name in ("PU", "PD") and len(numbers) % 2):
+            raise ValueError(tell("'{text}' at character {at}: a number is missing").format(text=found[0].strip()[:40], at=at))
+        if name != "PD" and len(path) > 1 and not area:  # the path since the pen went down is a stroke
+            plot.strokes.append(InkStroke(np.array(path), width))
+            path = path[-1:]
+        places = [STEP * complex(x, y) for x, y in zip(numbers[::2], numbers[1::2], strict=False)]
+        match name:
+            case "PD":
+                path += places
+            case "PU":
+                plot.travel += sum(abs(b - a) for a, b in pairwise([path[-1], *places]))
+                path = places[-1:] or path
+            case "SP":
+                pen = int(numbers[0]) if numbers else 0
+                width = widths.get(pen, UNKNOWN_PEN)
+                plot.pens += [pen] if pen else []
+            case "PW":
+                width = numbers[0]
+            case "PS":
+                plot.size = STEP * numbers[0], STEP * numbers[1]
+            case "PM":
+                area = not numbers or numbers[0] == 0
+                if not area:
+                    plot.strokes.append(InkStroke(np.array(path), 0.0, True))
+                    path = path[-1:]
+            case "IN" | "BP" | "LA" | "VS" | "FP" | "PG":
+                pass  # moves no ink; an area is recorded when it is closed
+            case _:
+                raise ValueError(unknown.format(text=text[at:at + 12], at=at))
         at = found.end()
-    reader.lift()
-    return reader.plot
-
-
-class _PlotReader:
-    """State of the machine; methods with names in capitals are its commands."""
-
-    def __init__(self, widths: dict[int, float]) -> None:
-        self.plot = PlotPicture()
-        self.widths = widths
-        self.width = UNKNOWN_PEN
-        self.path = [0j]
-        self.polygon = False
-
-    def lift(self) -> None:
-        """Raise the pen: the path since it went down becomes a stroke."""
-        if len(self.path) > 1 and not self.polygon:
-            self.plot.strokes.append(InkStroke(np.array(self.path), self.width))
-            self.path = self.path[-1:]
-
-    def IN(self, numbers: list[float]) -> None:
-        self.lift()
-
-    def PU(self, numbers: list[float]) -> None:
-        self.lift()
-        for place in _points(numbers):
-            self.plot.travel += abs(place - self.path[-1])
-            self.path = [place]
-
-    def PD(self, numbers: list[float]) -> None:
-        self.path += _points(numbers)
-
-    def SP(self, numbers: list[float]) -> None:
-        self.lift()
-        pen = int(numbers[0]) if numbers else 0
-        self.width = self.widths.get(pen, UNKNOWN_PEN)
-        self.plot.pens += [pen] if pen else []
-
-    def PW(self, numbers: list[float]) -> None:
-        self.lift()
-        self.width = numbers[0]
-
-    def PS(self, numbers: list[float]) -> None:
-        self.plot.size = (STEP * numbers[0], STEP * numbers[1])
-
-    def PM(self, numbers: list[float]) -> None:
-        self.lift()
-        self.polygon = not numbers or numbers[0] == 0
-        if not self.polygon:
-            self.plot.strokes.append(InkStroke(np.array(self.path), 0.0, True))
-            self.path = self.path[-1:]
-
-
-def _points(numbers: list[float]) -> list[complex]:
-    return [STEP * complex(x, y) for x, y in zip(numbers[::2], numbers[1::2], strict=True)]
+    if len(path) > 1 and not area:
+        plot.strokes.append(InkStroke(np.array(path), width))
+    return plot

@@ -7,14 +7,15 @@ reportlab makes the page, the font and the file; the content stream is written h
 from __future__ import annotations
 
 import zlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from hashlib import md5
 from io import BytesIO
 from math import ceil, cos, isfinite, pi, sin, tan
 from time import gmtime, strftime
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
-import numpy as np
 from reportlab.lib.utils import TimeStamp
 from reportlab.pdfbase import pdfdoc, pdfmetrics
 from reportlab.pdfbase.ttfonts import TTFont
@@ -22,7 +23,7 @@ from reportlab.pdfgen.canvas import Canvas
 
 from tmm_sheets.backends.svg import escaped
 from tmm_sheets.drawing.ink import strokes
-from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Mark, Text
+from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Polyline, Text, coordinates
 from tmm_sheets.drawing.styles import layer, line_type, roles
 from tmm_sheets.files import source_date
 from tmm_sheets.resources import template
@@ -34,6 +35,9 @@ FONT = "TMMSheetsB"
 CREATOR = "tmm-sheets"
 CAP = 0.7  # height of a capital letter of the font, em
 BEZIER = pi / 4  # an arc is cut into cubic curves of at most this angle: 4e-6 of the radius off the circle
+
+
+Stroke = Line | Arc | Polyline | Fill
 
 
 class _FastFlate(pdfdoc.PDFStreamFilterZCompress):  # type: ignore[misc]
@@ -205,10 +209,10 @@ def _metadata(drawing: Drawing, date: str) -> bytes:
 
 def _geometry(drawing: Drawing, names: Mapping[str, str] | None = None) -> str:
     """Path operators of all marks but lettering, by role, in its layer, and by line type."""
-    by_look: dict[tuple[str, str], list[str]] = {}
-    for mark in strokes(drawing.marks):
-        if not isinstance(mark, Text):
-            by_look.setdefault((names[layer(mark).role] if names else "", mark.style), []).append(_path(mark))
+    by_look = defaultdict[tuple[str, str], list[str]](list)
+    drawn = [mark for mark in drawing.marks if not isinstance(mark, Text)]
+    for mark in cast("Iterator[Stroke]", strokes(drawn)):
+        by_look[names[layer(mark).role] if names else "", mark.style] += [_path(mark)]
     # Thin lines first, so that thick ones lie over their ends.
     looks = sorted(by_look, key=lambda look: (look[0], line_type(look[1]).width, look[1]))
     parts = []
@@ -217,21 +221,23 @@ def _geometry(drawing: Drawing, names: Mapping[str, str] | None = None) -> str:
         parts.append(f"/OC /{look[0]} BDC\n{path}\nEMC" if look[0] else path)
     body = "\n".join(parts)
     if "n" in body.replace("\n", " "):  # path operators used here contain no n; nan and inf do
-        bad = next(m for m in strokes(drawing.marks) if not isinstance(m, Text) and "n" in _path(m))
+        bad = next(m for m in cast("Iterator[Stroke]", strokes(drawn)) if "n" in _path(m))
         raise ValueError(f"a mark of '{bad.of}' has no finite place: {bad}")
     return body
 
 
-def _path(mark: Mark) -> str:
-    if isinstance(mark, Line):
-        return f"{mark.a.real:.3f} {mark.a.imag:.3f} m {mark.b.real:.3f} {mark.b.imag:.3f} l S"
-    if isinstance(mark, Arc):
-        return _arc(mark)
-    assert not isinstance(mark, Text)
-    points = mark.points
-    xy = np.column_stack((points.real, points.imag)).ravel().tolist()
-    end = "f" if isinstance(mark, Fill) else "s" if mark.closed else "S"
-    return ("%.3f %.3f m" + " %.3f %.3f l" * (len(points) - 1)) % tuple(xy) + " " + end
+def _path(mark: Stroke) -> str:
+    match mark:
+        case Line():
+            return f"{mark.a.real:.3f} {mark.a.imag:.3f} m {mark.b.real:.3f} {mark.b.imag:.3f} l S"
+        case Arc():
+            return _arc(mark)
+        case Fill():
+            end = "f"
+        case _:
+            end = "s" if mark.closed else "S"
+    xy = coordinates(mark.points)
+    return ("%.3f %.3f m" + " %.3f %.3f l" * (len(xy) // 2 - 1)) % tuple(xy) + " " + end
 
 
 def _arc(mark: Arc) -> str:
@@ -252,21 +258,27 @@ def _arc(mark: Arc) -> str:
     return " ".join(out)
 
 
+@lru_cache(maxsize=4096)
+def _turned(angle: float) -> str:
+    c, s = cos(angle), sin(angle)
+    return f"{c:.5f} {s:.5f} {-s:.5f} {c:.5f}"
+
+
 def _lettering(drawing: Drawing, page: Any) -> str:
     """Text operators of the runs of letters, in the order of the drawing."""
     font, doc, escape = pdfmetrics.getFont(FONT), page._doc, page._escape
-    out, now, wide = ["BT"], "", 1.0
+    out, now, wide, known = ["BT"], "", 1.0, {*map(chr, font.face.charToGlyph)}
     coded = dict[str, list[tuple[str, str]]]()  # by its text each run's subsets of the font with its codes there
     for mark in drawing.marks:
         if not isinstance(mark, Text):
             continue
         if mark.text not in coded:
-            if missing := [c for c in mark.text if ord(c) not in font.face.charToGlyph]:
+            if not known.issuperset(mark.text):
+                missing = [c for c in mark.text if c not in known]
                 raise ValueError(f"the drawing font has no character '{missing[0]}' (U+{ord(missing[0]):04X}) in '{mark.text}'")
             coded[mark.text] = [(font.getSubsetInternalName(subset, doc), escape(code))
                                 for subset, code in font.splitString(mark.text, doc)]
-        c, s = cos(mark.angle), sin(mark.angle)
-        place = f"{c:.5f} {s:.5f} {-s:.5f} {c:.5f} {mark.at.real:.3f} {mark.at.imag:.3f} Tm"
+        place = f"{_turned(mark.angle)} {mark.at.real:.3f} {mark.at.imag:.3f} Tm"
         if "n" in place:
             raise ValueError(f"lettering '{mark.text}' of '{mark.of}' has no finite place: {mark}")
         out.append(place)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from cmath import exp
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from math import ceil, pi
 
@@ -52,27 +53,25 @@ def picture(marks: Iterable[Mark], box: Box) -> bytes:
     Units are whole micrometres, y points down, each line type and each height of lettering is one path: only programs read it.
     """
     corner = complex(box.x0, box.y1)
-    lines: dict[str, _Trace] = {}
-    texts: dict[float, _Trace] = {}
-    fills: list[str] = []
+    lines, texts, fills = defaultdict[str, _Trace](_Trace), defaultdict[float, _Trace](_Trace), list[str]()
     for mark in strokes(marks):
         check(mark)
-        if isinstance(mark, Text):
-            trace = texts.setdefault(mark.height, _Trace())
-            for points in letters(mark):
-                trace.add(points.tolist())
-        elif isinstance(mark, Fill):
-            trace = _Trace()
-            trace.add(mark.points.tolist(), "z")
-            fills.append(trace.path(corner))
-        elif isinstance(mark, Arc):
-            ends, closed = _ends(mark)
-            r = round(MICRO * mark.radius)
-            lines.setdefault(mark.style, _Trace()).add(ends, closed, f"A{r} {r} 0 0 0 ")
-        elif isinstance(mark, Line):
-            lines.setdefault(mark.style, _Trace()).add((mark.a, mark.b))
-        else:
-            lines.setdefault(mark.style, _Trace()).add(mark.points.tolist(), "z" if mark.closed else "")
+        match mark:
+            case Text():
+                for points in letters(mark):
+                    texts[mark.height].add(points.tolist())
+            case Fill():
+                trace = _Trace()
+                trace.add(mark.points.tolist(), "z")
+                fills.append(trace.path(corner))
+            case Arc():
+                ends, closed = _ends(mark)
+                r = round(MICRO * mark.radius)
+                lines[mark.style].add(ends, closed, f"A{r} {r} 0 0 0 ")
+            case Line():
+                lines[mark.style].add((mark.a, mark.b))
+            case _:
+                lines[mark.style].add(mark.points.tolist(), "z" if mark.closed else "")
     body = "".join((
         *(_group(f'stroke-width="{MICRO * line_type(style).width:g}"', [lines[style].path(corner)]) for style in lines),
         _group('stroke="none" fill="#000"', fills),

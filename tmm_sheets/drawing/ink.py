@@ -13,7 +13,7 @@ from cmath import exp, isfinite, phase, rect
 from collections.abc import Iterable, Iterator
 from itertools import chain, pairwise
 from math import acos, ceil, inf, pi, sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -68,15 +68,16 @@ def check(mark: Mark) -> None:
     ValueError
         when they are not.
     """
-    if isinstance(mark, Line):
-        good = isfinite(mark.a) and isfinite(mark.b)
-    elif isinstance(mark, Arc):
-        good = isfinite(mark.centre) and isfinite(complex(mark.radius, mark.start)) and isfinite(mark.end)
-    elif isinstance(mark, Text):
-        good = isfinite(mark.at) and isfinite(complex(mark.height, mark.angle))
-    else:
-        good = bool(np.isfinite(mark.points).all())
-    if not good:
+    match mark:
+        case Line():
+            numbers: Any = mark.a, mark.b
+        case Arc():
+            numbers = mark.centre, mark.radius, mark.start, mark.end
+        case Text():
+            numbers = mark.at, mark.height, mark.angle
+        case _:
+            numbers = mark.points.tolist()
+    if not all(map(isfinite, numbers)):
         raise ValueError(f"a mark of '{mark.of}' has no finite place: {mark}")
 
 
@@ -225,8 +226,9 @@ def _stretches(points: Points, reached: npt.NDArray[np.float64], parts: Iterable
 
 def interrupted(mark: Mark) -> list[Mark]:
     """Pieces of a line that lettering interrupts; any other mark unchanged."""
-    if isinstance(mark, (Text, Fill)) or not mark.gaps:
-        return [mark]
+    match mark:
+        case Text() | Fill() | Line(gaps=()) | Arc(gaps=()) | Polyline(gaps=()):
+            return [mark]
     borders = [0.0, *(border for gap in mark.gaps for border in gap), 1.0]
     pieces = [(a, b) for a, b in zip(borders[::2], borders[1::2], strict=True) if b > a]
     whole = mark._replace(gaps=())
@@ -245,19 +247,21 @@ def interrupted(mark: Mark) -> list[Mark]:
 def strokes(marks: Iterable[Mark]) -> Iterator[Mark]:
     """The marks, with lines that have a pattern or are interrupted behind lettering replaced by their strokes."""
     for mark in chain.from_iterable(map(interrupted, marks)):
-        if not isinstance(mark, Line | Arc | Polyline) or not (pattern := line_type(mark.style).pattern):
+        if isinstance(mark, (Text, Fill)) or not (pattern := line_type(mark.style).pattern):
             yield mark
-        elif isinstance(mark, Line):
-            length = abs(mark.b - mark.a)
-            u = (mark.b - mark.a) / length if length else 0j
-            for a, b in cut(length, pattern):
-                yield mark._replace(a=mark.a + a * u, b=mark.a + b * u)
-        elif isinstance(mark, Arc):
-            r = mark.radius
-            for a, b in cut((mark.end - mark.start) * r, pattern, mark.end - mark.start > 2 * pi - 1e-9):
-                yield mark._replace(start=mark.start + a / r, end=mark.start + b / r)
-        else:
-            points = flat(mark)
-            reached = run(points)
-            for part in _stretches(points, reached, cut(float(reached[-1]), pattern, mark.closed)):
-                yield Polyline(part, mark.style, False, mark.of, mark.by)
+            continue
+        match mark:
+            case Line():
+                length = abs(mark.b - mark.a)
+                u = (mark.b - mark.a) / length if length else 0j
+                for a, b in cut(length, pattern):
+                    yield mark._replace(a=mark.a + a * u, b=mark.a + b * u)
+            case Arc():
+                r = mark.radius
+                for a, b in cut((mark.end - mark.start) * r, pattern, mark.end - mark.start > 2 * pi - 1e-9):
+                    yield mark._replace(start=mark.start + a / r, end=mark.start + b / r)
+            case _:
+                points = flat(mark)
+                reached = run(points)
+                for part in _stretches(points, reached, cut(float(reached[-1]), pattern, mark.closed)):
+                    yield Polyline(part, mark.style, False, mark.of, mark.by)

@@ -45,7 +45,8 @@ Numbers = npt.NDArray[np.intp]
 class InkIndex:
     """Ink of a sheet: lines as segments ``a`` .. ``b``, complex (n,), lettering as bounding boxes ``written``, (t, 4).
 
-    Each segment has the number of its mark (``of``), is ``strong`` or not, and has ``half`` the width of its line, mm. The boxes
+    Each segment has the number of its mark (``of``), is ``strong`` or not, one of the ``parts`` or not that may separate a label
+    from its object (no bars over letters, no windows), and has ``half`` the width of its line, mm. The boxes
     are x0, y0, x1, y1 of the marks numbered ``texts``; NaN where lettering was removed. ``area``: where room is searched;
     ``windows``: numbers of the circles of enlarged details.
     """
@@ -54,18 +55,19 @@ class InkIndex:
         self.area, self._windows = area, windows
         self.marks = list[Mark]()
         self.a, self.b, self.of = np.empty(0, complex), np.empty(0, complex), np.empty(0, int)
-        self.strong, self._heavy, self._parts = np.empty((3, 0), bool)
+        self.strong, self._heavy, self.parts = np.empty((3, 0), bool)
         self.half, self.sides = np.empty(0), np.empty((4, 0))
         self.written, self._corners, self.texts = np.empty((0, 4)), np.empty((0, 4), complex), list[int]()
         self._filled, self._steps = np.empty((0, 4)), defaultdict[tuple[str | int, ...], list[int]](list)
         self._lines = dict[tuple[str | int, ...], dict[int, tuple[tuple[complex, complex], Role]]]()
+        self.surroundings = dict[Any, Any]()
         self.set_leaders(np.empty(0), np.empty(0))
         self.add(marks)
 
     def add(self, marks: Iterable[Mark]) -> None:
         """Add marks."""
         first, starts, ends, lines = len(self.marks), list[Any](), list[Any](), list[tuple[int, bool, bool, bool, float]]()
-        texts, filled = dict[int, Text](), list[tuple[float, float, float, float]]()
+        texts, filled, types = dict[int, Text](), list[Box](), line_types()
         before = len(self.a), len(self.written), len(self._filled)
         self.marks.extend(marks)
         for number, mark in enumerate(self.marks[first:], first):
@@ -75,28 +77,30 @@ class InkIndex:
             if isinstance(mark, Text):
                 texts[number] = mark
                 continue
-            width = line_types()[mark.style].width
-            if isinstance(mark, Line):  # most are: quicker without an array for each
-                starts.append((mark.a,))
-                ends.append((mark.b,))
-            else:
-                points = flat(mark, 1.0)
-                if isinstance(mark, Polyline):
-                    points = _thin(points)
-                elif isinstance(mark, Fill):
-                    x, y, width = points.real.tolist(), points.imag.tolist(), 0.0
-                    filled.append((min(x), min(y), max(x), max(y)))
-                starts.append(points[:-1])
-                ends.append(points[1:])
+            width = types[mark.style].width
             bar, strong = mark.style == "text", mark.style in STRONG
-            heavy, parts = strong or bar or isinstance(mark, Fill) or _is_short(mark), not bar and number not in self._windows
-            lines.append((number, strong, heavy, parts, width / 2))
+            heavy = strong or bar or _is_short(mark)
+            match mark:
+                case Line():  # most are: quicker without an array for each
+                    starts.append((mark.a,))
+                    ends.append((mark.b,))
+                case _:
+                    points = flat(mark, 1.0)
+                    match mark:
+                        case Polyline():
+                            points = _thin(points)
+                        case Fill():
+                            filled.append(Box.around(points))
+                            heavy, width = True, 0.0
+                    starts.append(points[:-1])
+                    ends.append(points[1:])
+            lines.append((number, strong, heavy, not bar and number not in self._windows, width / 2))
         if lines:
             a, b = (np.fromiter(chain.from_iterable(of), complex) for of in (starts, ends))
             self.a, self.b, self.sides = np.append(self.a, a), np.append(self.b, b), np.hstack((self.sides, sides(a, b)))
-            self.of, self.strong, self._heavy, self._parts, self.half = (
+            self.of, self.strong, self._heavy, self.parts, self.half = (
                 np.append(known, np.repeat(column, [*map(len, starts)])) for known, column in zip(
-                    (self.of, self.strong, self._heavy, self._parts, self.half), zip(*lines, strict=True), strict=True))
+                    (self.of, self.strong, self._heavy, self.parts, self.half), zip(*lines, strict=True), strict=True))
         if texts:
             corners = text_boxes([*texts.values()])
             self.texts += texts
@@ -105,6 +109,7 @@ class InkIndex:
             self._filled = np.vstack((self._filled, filled))
         vars(self).pop("_outlines", None)
         self._lines.clear()
+        self.surroundings.clear()
         for name, make in (("heavy", self._heavy_cells), ("light", self._light_cells)):
             if name in vars(self):
                 vars(self)[name].include(make(*before))
@@ -117,7 +122,7 @@ class InkIndex:
 
     def set_leaders(self, a: Any, b: Any) -> None:
         """Replace the leaders by those from ``a`` to ``b``, complex (n,)."""
-        self._leaders = np.asarray(a, complex), np.asarray(b, complex)
+        self.leaders = np.asarray(a, complex), np.asarray(b, complex)
 
     def of_step(self, by: Provenance) -> list[int]:
         """Numbers of the marks with this step, position and frame, and with this name if any has it (an arm of a sum)."""
@@ -143,18 +148,10 @@ class InkIndex:
         own = edges[np.any([(of >= first) & (of < end) for first, end in spans], axis=0)] if spans else edges[:0]
         return Box(*own[:, :2].min(axis=0).tolist(), *own[:, 2:].max(axis=0).tolist()) if len(own) else None
 
-    def parting(self, p: complex, reach: float) -> tuple[Points, Points, Numbers, Flags]:
-        """Segments within ``reach`` of a point that may separate a label from its object: ``a``, ``b``, mark number, strong or not.
-
-        Without bars over letters and windows; leaders come last.
-        """
+    def parting(self, p: complex, reach: float) -> Numbers:
+        """Numbers of the segments within ``reach`` of a point that may separate a label from its object: no bars, no windows."""
         here = self.near(Box(p.real, p.imag, p.real, p.imag), reach)
-        here = here[self._parts[here]]
-        a, b = self._leaders
-        near = distance(a, b, p) <= reach
-        n = int(near.sum())
-        return (np.concatenate((self.a[here], a[near])), np.concatenate((self.b[here], b[near])),
-                np.concatenate((self.of[here], np.full(n, LEADER))), np.concatenate((self.strong[here], np.zeros(n, bool))))
+        return np.asarray(here[self.parts[here]])
 
     def count_in(self, box: Box, origin: complex = 0j, direction: float = 0.0) -> int:
         """Weighted number of lines in a rectangle whose axes have ``direction``, rad, about ``origin``; see ``WORSE``."""
@@ -184,11 +181,6 @@ class InkIndex:
     def lettering_near(self, box: Box, beside: float, above: float) -> Numbers:
         """Rows of the lettering nearer to a rectangle than ``beside`` mm horizontally and ``above`` mm vertically."""
         return find_near(self.written.T, box.inset(-beside, -above, -beside, -above), 0.0)
-
-    @property
-    def parts(self) -> Flags:
-        """Mask, (n,), of the segments that may separate a label from its object: no bars over letters, no windows."""
-        return self._parts
 
     @cached_property
     def _outlines(self) -> tuple[Points, Points, Floats, npt.NDArray[np.int_]]:
@@ -241,8 +233,8 @@ def sample(a: Any, b: Any, step: float) -> Points:
 
 def sides(a: Any, b: Any) -> Floats:
     """Bounding boxes of segments a .. b, complex (n,): left, lower, right and upper edges, (4, n)."""
-    low, high = ((of(a.real, b.real), of(a.imag, b.imag)) for of in (np.minimum, np.maximum))
-    return np.array([*low, *high])
+    (ax, ay), (bx, by) = (a.real, a.imag), (b.real, b.imag)
+    return np.array([np.minimum(ax, bx), np.minimum(ay, by), np.maximum(ax, bx), np.maximum(ay, by)])
 
 
 def find_near(edges: Floats, box: Box, reach: float) -> npt.NDArray[np.intp]:
@@ -250,15 +242,18 @@ def find_near(edges: Floats, box: Box, reach: float) -> npt.NDArray[np.intp]:
     x0, y0, x1, y1 = edges
     # The method: np.flatnonzero costs five calls more, and this is asked thousands of times.
     near = (x0 <= box.x1 + reach) & (x1 >= box.x0 - reach) & (y0 <= box.y1 + reach) & (y1 >= box.y0 - reach)
-    return np.asarray(near.nonzero()[0])
+    found: Numbers = near.nonzero()[0]
+    return found
 
 
 def _thin(points: Any) -> Any:
     """Thin a polyline of 50 points or more, complex (n,) mm, to one point per millimetre of arc length; both ends stay."""
     if len(points) < 50:
         return points
-    keep = np.flatnonzero(np.diff(np.floor(run(points)), prepend=-1.0))
-    return points[np.union1d(keep, [len(points) - 1])]
+    reached = np.floor(run(points))
+    keep = np.append(True, reached[1:] != reached[:-1])
+    keep[-1] = True
+    return points[keep]
 
 
 def distance(a: Any, b: Any, p: Any) -> Floats:
@@ -266,25 +261,28 @@ def distance(a: Any, b: Any, p: Any) -> Floats:
     d = b - a
     length2 = np.maximum(np.abs(d) ** 2, 1e-18)
     t = np.minimum(np.maximum(((p - a) * np.conj(d)).real / length2, 0.0), 1.0)
-    return np.asarray(np.abs(a + t * d - p))
+    found: Floats = np.abs(a + t * d - p)
+    return found
 
 
 def enters(a: Any, d: Any, x0: Any, y0: Any, x1: Any, y1: Any) -> Flags:
     """Mask: does a + t d, 0 <= t <= 1, meet the rectangle? Slab method; arguments broadcast."""
-    first, last = 0.0, 1.0
+    first: Any = 0.0
+    last: Any = 1.0
     for start, step, low, high in ((a.real, d.real, x0, x1), (a.imag, d.imag, y0, y1)):
         safe = np.where(np.abs(step) < 1e-12, 1e-12, step)  # along the sides: far off at both ends, or between them
         u, v = (low - start) / safe, (high - start) / safe
         first, last = np.maximum(first, np.minimum(u, v)), np.minimum(last, np.maximum(u, v))
-    return np.asarray(first <= last)
+    found: Flags = first <= last
+    return found
 
 
 def crosses(a: Any, b: Any, p: Any, q: Any) -> Flags:
     """Mask: do segments a .. b cross p .. q? Touching does not count; arguments broadcast."""
-    def side(u: Any, v: Any, w: Any) -> Any:
-        return ((v - u) * np.conj(w - u)).imag
-
-    return np.asarray((side(p, q, a) * side(p, q, b) < -TOUCHING) & (side(a, b, p) * side(a, b, q) < -TOUCHING))
+    d, e = b - a, q - p
+    parted = (e * np.conj(a - p)).imag * (e * np.conj(b - p)).imag < -TOUCHING  # a and b by the line p .. q
+    found: Flags = parted & ((d * np.conj(p - a)).imag * (d * np.conj(q - a)).imag < -TOUCHING)
+    return found
 
 
 _FIRST_BEYOND = np.array([0, 0, 1, 1])[:, None]
@@ -349,8 +347,8 @@ class Cells:
         return np.asarray(np.minimum(np.maximum(cells, 0), self._last))
 
 
-def sum_area(taken: npt.NDArray[np.bool_]) -> npt.NDArray[np.int32]:
-    """Summed-area table, (nx + 1, ny + 1), of a mask (nx, ny)."""
+def sum_area(taken: npt.NDArray[np.bool_] | npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
+    """Summed-area table, (nx + 1, ny + 1), of a mask or of counts (nx, ny)."""
     table = np.zeros((taken.shape[0] + 1, taken.shape[1] + 1), np.int32)
     np.cumsum(taken, axis=1, dtype=np.int32, out=table[1:, 1:])
     for i in range(1, len(table)):  # row upon row: three times quicker than another cumsum, which walks down columns
@@ -399,16 +397,10 @@ def _outline(mark: Mark) -> Points:
 
 def dense(marks: Iterable[Mark], step: float) -> Points:
     """Points along marks, or round their lettering, complex (n,), at most ``step`` mm apart."""
-    straight, texts, others = list[tuple[complex, complex]](), list[Text](), list[Points]()
-    for mark in marks:  # most are lines and lettering: quicker without an array for each
-        if isinstance(mark, Line):
-            straight.append((mark.a, mark.b))
-        elif isinstance(mark, Text):
-            texts.append(mark)
-        else:
-            others.append(flat(mark, 2.0))
-    a, b = np.array(straight, complex).reshape(-1, 2).T
-    corners = text_boxes(texts)
+    some = list(marks)
+    a, b = np.array([(mark.a, mark.b) for mark in some if isinstance(mark, Line)], complex).reshape(-1, 2).T
+    corners = text_boxes([mark for mark in some if isinstance(mark, Text)])
+    others = [flat(mark, 2.0) for mark in some if not isinstance(mark, (Line, Text))]
     return sample(np.concatenate((a, corners[:, :-1].ravel(), *(z[:-1] for z in others))),
                   np.concatenate((b, corners[:, 1:].ravel(), *(z[1:] for z in others))), step)
 

@@ -63,6 +63,8 @@ MANY = 96
 """So many places of a label that does not stand well at its first one are judged in one go."""
 ROOMS = 8
 """So many places of a label are tried to make room for the one it meets."""
+EVERYWHERE = Box(-np.inf, -np.inf, np.inf, np.inf)
+"""Place of a view without a place."""
 _MARGIN = CLEAR * np.array([-1.0, -1.0, 1.0, 1.0])[:, None]
 
 
@@ -108,7 +110,7 @@ class PlacedLabels:
     def __init__(self, ink: InkIndex, labels: Sequence[Label], views: Sequence[Box] = ()) -> None:
         self.ink, self.labels, self.views = ink, labels, views
         self.at = list[Placement]()
-        self.inside = np.array([ink.area.x0 + 1, ink.area.y0 + 1, ink.area.x1 - 1, ink.area.y1 - 1])[:, None]
+        self.inside = np.array(ink.area.inset(1))[:, None]
         self.written = np.vstack((ink.written, np.full((len(labels), 4), np.nan)))
         self.boxes = self.written[len(ink.written):]
         self._led: dict[int, tuple[complex, complex]] = {}
@@ -286,13 +288,13 @@ class PlacedLabels:
 class _Candidates(NamedTuple):
     """Places about a label's anchor before others are set: rectangles ``sides`` (x0, y0, x1, y1; shape (4, n)) and their ``cost``.
 
-    ``beyond`` is how far they leave the place of the label's view, mm, None where it has none. ``clear`` are those inside the sheet
-    and clear of heavy lines; all are within the box ``around`` them.
+    Those that have ``strayed`` leave the place of the label's view too far. ``clear`` are those inside the sheet and clear of heavy
+    lines; all are within the box ``around`` them.
     """
 
     sides: npt.NDArray[np.float64]
     cost: npt.NDArray[np.float64]
-    beyond: npt.NDArray[np.float64] | None
+    strayed: npt.NDArray[np.bool_]
     clear: npt.NDArray[np.bool_]
     around: Box
 
@@ -320,27 +322,26 @@ def _candidates(placed: PlacedLabels, labels: Sequence[Label], around: Around = 
         # A label that should do without a leader line gets one only when nothing near is free.
         cost = distances[k] * 1.2 + (0.0 if label.leader else FAR * (away > NEAR)[:, None])
         cost = (cost + turned if label.away else np.repeat(cost, len(directions), axis=1)).ravel()
-        beyond = None
-        if 0 <= label.part < len(placed.views) and (view := placed.views[label.part]).contains(label.anchor):
-            x0, y0, x1, y1 = sides[:, k] + _MARGIN
-            beyond = np.maximum.reduce([view.x0 - x0, view.y0 - y0, x1 - view.x1, y1 - view.y1])
-        cost += label.thin * LIGHT * light[k]
-        found.append(_Candidates(sides[:, k], cost, beyond, clear[k], Box(*(edge[k] for edge in edges))))
+        own = placed.views[label.part] if 0 <= label.part < len(placed.views) else EVERYWHERE
+        view = own if own.contains(label.anchor) else EVERYWHERE
+        x0, y0, x1, y1 = sides[:, k] + _MARGIN
+        beyond = np.maximum.reduce([view.x0 - x0, view.y0 - y0, x1 - view.x1, y1 - view.y1])
+        cost += label.thin * LIGHT * light[k] + OUTSIDE * (beyond > 0)
+        found.append(_Candidates(sides[:, k], cost, beyond > AWAY, clear[k], Box(*(edge[k] for edge in edges))))
     return found
 
 
 def _first_places(placed: PlacedLabels, labels: Sequence[Label], tried: Sequence[_Candidates]) -> list[Box | None]:
     """The cheapest place of each label if nothing is wrong with it, leaders aside, judged together; None where it needs thought."""
     found: list[Box | None] = [None] * len(labels)
-    cost = np.array([np.where(each.clear, each.cost if each.beyond is None else each.cost + OUTSIDE * (each.beyond > 0), np.inf)
-                     for each in tried])
+    cost = np.array([np.where(each.clear, each.cost, np.inf) for each in tried])
     best = np.argmin(cost, axis=1)
     there = np.array([each.sides[:, k] for each, k in zip(tried, best.tolist(), strict=True)]).T
     p, gap, heights = (np.array(v) for v in zip(*((label.anchor, label.gap, label.height) for label in labels), strict=True))
     x0, y0, x1, y1 = there
     way = np.abs(owners.nearest(p, there) - p)
     sure = np.isfinite(cost[np.arange(len(labels)), best]) & (way <= NEAR + gap) & np.array([not label.shelf for label in labels])
-    sure &= np.array([each.beyond is None or not each.beyond[k] > AWAY for each, k in zip(tried, best.tolist(), strict=True)])
+    sure &= np.array([not each.strayed[k] for each, k in zip(tried, best.tolist(), strict=True)])
     apart = np.maximum(CLEAR, WORD * heights)
     sure &= ~_overlap(np.array([x0 - apart, y0 - CLEAR, x1 + apart, y1 + CLEAR]), placed.written)
     some = sure.nonzero()[0]
@@ -358,7 +359,7 @@ class _Places:
 
     def __init__(self, placed: PlacedLabels, label: Label, candidates: _Candidates) -> None:
         self.label, self._placed = label, placed
-        self.sides, cost, beyond, clear, around = candidates
+        self.sides, cost, self._strayed, clear, around = candidates
         free = np.flatnonzero(clear)
         near = placed.boxes[ink_index.find_near(placed.boxes.T, around, CLEAR)]
         if len(free) and len(near):
@@ -368,10 +369,6 @@ class _Places:
         gap = WORD * label.height
         read_on = _read_on(there, placed.written[ink_index.find_near(placed.written.T, around, gap)], gap)
         more = cost[some] + RUN_ON * read_on
-        self._strayed = None
-        if beyond is not None:
-            more = more + OUTSIDE * (beyond[some] > 0)
-            self._strayed = beyond > AWAY
         leaders = placed.leaders[ink_index.find_near(placed.leaders.T, around, CLEAR)]
         if len(leaders):
             more += COVERING * _overlap(there + _MARGIN, leaders)
@@ -402,7 +399,7 @@ class _Places:
             if (not leaders and self.led[k]) or (spot is not None and self.cost[k] + spot[k] >= least):
                 continue
             if k not in found:
-                some = self.free[rank:rank + MANY].tolist()
+                some = self.free[rank:rank + max(MANY, rank)].tolist()
                 found |= zip(some, self.faults(here, some), strict=True)
             fault = found[k]
             if not fault or (spot is not None and fault <= spot[k]):
@@ -420,7 +417,7 @@ class _Places:
     def faults(self, here: owners.Surroundings, some: Sequence[int]) -> list[float]:
         """Costs of what is wrong with the label at some places, 0 for nothing."""
         label, sides = self.label, self.sides[:, some]
-        found = np.zeros(len(some)) if self._strayed is None else STRAYED * self._strayed[some]
+        found = np.zeros(len(some)) + STRAYED * self._strayed[some]
         led, alone = self.led[some].nonzero()[0], (~self.led[some]).nonzero()[0]
         if len(alone):
             bad, vague = here.judge(sides[:, alone])
@@ -436,7 +433,8 @@ class _Places:
             found[led] += OVER * over + CROSSING * here.count_crossed(p, q)
             if here.head is not None:
                 found[led] += IN_HEAD * here.unsure
-        return found.tolist()
+        costs: list[float] = found.tolist()
+        return costs
 
     def well_apart(self, here: owners.Surroundings) -> Iterator[int]:
         """Free places whose leader runs over no lettering, the cheapest first, none near one before it."""
@@ -509,8 +507,13 @@ def _place(placed: PlacedLabels, label: Label, candidates: _Candidates, around: 
 
 
 def _surroundings(ink: InkIndex, label: Label) -> owners.Surroundings:
-    """What is near the anchor of a label, as far as it may stand from there."""
-    return owners.Surroundings(ink, label, 2 * (NEAR + label.gap) + size(label.text, label.height)[0])
+    """What is near the anchor of a label, as far as it may stand from there; of lines on the ink it is looked for once."""
+    found: owners.Surroundings | None = ink.surroundings.get(label)
+    if found is None:
+        reach = 2 * (NEAR + label.gap) + size(label.text, label.height)[0]
+        found = ink.surroundings[label] = owners.Surroundings(ink, label, reach)
+    found.meet_leaders()
+    return found
 
 
 def _leader(label: Label, box: Box) -> tuple[complex, complex] | None:

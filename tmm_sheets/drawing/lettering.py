@@ -285,15 +285,13 @@ def letter(markup: str, height: float) -> Lettering:
     """
     setter = _Setter(markup)
     setter.set(markup, 0j, float(height))  # 5 and 5.0 share one place in the cache, and the record tells the height
-    right = top = bottom = 0.0
+    edges = [(0.0, 0.0, 0.0)]  # right, upper and lower one of each run and bar
     for at, text, size in setter.runs:
         _, below, width, above = extents(text)
-        right, top = max(right, at.real + size * width), max(top, at.imag + size * above)
-        bottom = min(bottom, at.imag + size * below)
-    for bar in setter.bars:
-        right = max(right, bar.b.real)
-        top = max(top, bar.b.imag + 0.05 * height)
-    return Lettering(right, top, -bottom, tuple(setter.runs), tuple(setter.bars))
+        edges.append((at.real + size * width, at.imag + size * above, at.imag + size * below))
+    edges += [(bar.b.real, bar.b.imag + 0.05 * height, 0.0) for bar in setter.bars]
+    right, top, bottom = zip(*edges, strict=True)
+    return Lettering(max(right), max(top), -min(bottom), tuple(setter.runs), tuple(setter.bars))
 
 
 def size_for(lines: Iterable[str], room: float, height: float, least: float = 2.5) -> float:

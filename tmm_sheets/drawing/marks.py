@@ -189,28 +189,38 @@ class Drawing:
 
 def moved(mark: Mark, by: complex) -> Mark:
     """The mark translated by ``by``, complex mm."""
-    if isinstance(mark, Line):
-        return mark._replace(a=mark.a + by, b=mark.b + by)
-    if isinstance(mark, Arc):
-        return mark._replace(centre=mark.centre + by)
-    if isinstance(mark, Text):
-        return mark._replace(at=mark.at + by)
-    return mark._replace(points=mark.points + by)
+    match mark:
+        case Line():
+            return mark._replace(a=mark.a + by, b=mark.b + by)
+        case Arc():
+            return mark._replace(centre=mark.centre + by)
+        case Text():
+            return mark._replace(at=mark.at + by)
+        case _:
+            return mark._replace(points=mark.points + by)
 
 
 def flat(mark: Mark, step: float = 0.5) -> Points:
     """Line of a mark as a polyline, complex (n,) mm; arcs in chords of at most ``step`` mm, of a text its start only."""
-    if isinstance(mark, Line):
-        return np.array([mark.a, mark.b])
-    if isinstance(mark, Arc):
-        n = max(int(np.ceil(abs(mark.end - mark.start) * mark.radius / step)), 8)
-        t = np.linspace(mark.start, mark.end, n + 1)
-        return np.asarray(mark.centre + mark.radius * (np.cos(t) + 1j * np.sin(t)))
-    if isinstance(mark, Text):
-        return np.array([mark.at])
-    points = np.asarray(mark.points)
-    closed = isinstance(mark, Fill) or mark.closed
-    return np.concatenate((points, points[:1])) if closed else points
+    match mark:
+        case Line():
+            return np.array([mark.a, mark.b])
+        case Arc():
+            n = max(int(np.ceil(abs(mark.end - mark.start) * mark.radius / step)), 8)
+            t = np.linspace(mark.start, mark.end, n + 1)
+            return np.asarray(mark.centre + mark.radius * (np.cos(t) + 1j * np.sin(t)))
+        case Text():
+            return np.array([mark.at])
+        case Polyline(closed=False):
+            return mark.points
+        case _:
+            return np.concatenate((mark.points, mark.points[:1]))
+
+
+def coordinates(points: Points) -> list[float]:
+    """Both coordinates of each of the points, complex (n,), in turn."""
+    found: list[float] = np.ascontiguousarray(points, dtype=complex).view(float).tolist()
+    return found
 
 
 def run(points: Points) -> npt.NDArray[np.float64]:

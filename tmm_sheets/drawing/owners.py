@@ -57,17 +57,35 @@ class Surroundings:
 
     def __init__(self, ink: InkIndex, label: Label, reach: float) -> None:
         p = label.anchor
-        self.anchor, self._ink, self._label = p, ink, label
-        self.a, self.b, self.of, self.strong = ink.parting(p, reach)
-        self.sides = sides(self.a, self.b)
-        self.leaders = self.of == LEADER
-        subject = _subject(ink, label)
-        named, self.vector = subject
-        self.own, self.twin = _belongings(ink, [label], [subject], np.zeros(len(self.of), int), self.a, self.b, self.of)
+        self.anchor, self._ink, self._label, self._reach = p, ink, label, reach
+        near = ink.parting(p, reach)
+        a, b, of = ink.a[near], ink.b[near], ink.of[near]
+        named, self.vector = subject = _subject(ink, label)
+        own, twin = _belongings(ink, [label], [subject], np.zeros(len(of), int), a, b, of)
+        self._lines: tuple[Any, ...] = a, b, of, ink.strong[near], own, twin, ink.sides[:, near]
+        rivals = ink.strong[near] & ~own | twin
+        self._rivals = a[rivals], b[rivals]
+        self._met: Any = None
+        self.meet_leaders()
         self.unsure = 0 if self.vector is None else int(self.count_unsure(np.array([p]))[0])
         heads = [mark for n in named if isinstance(mark := ink.marks[n], Fill)] if self.unsure else []
         self._heads = [mark.points for mark in heads if mark.by and mark.by.role == "vector"]
         self.head = next((points for points in self._heads if _is_inside(p, points)), None)
+
+    def meet_leaders(self) -> None:
+        """Know the leaders that are near by now: those of other labels name nothing, but for one that runs along the vector."""
+        if self._met is self._ink.leaders:
+            return
+        self._met = a, b = self._ink.leaders
+        lines = self._lines
+        if len(a) and (near := distance(a, b, self.anchor) <= self._reach).any():
+            a, b = a[near], b[near]
+            none = np.zeros(len(a), bool)
+            own = none if self.vector is None else _lies_along(*self.vector, a, b)
+            led = a, b, none + LEADER, none, own, none, sides(a, b)
+            lines = tuple(np.concatenate(pair, axis=-1) for pair in zip(lines, led, strict=True))
+        self.a, self.b, self.of, self.strong, self.own, self.twin, self.sides = lines
+        self.leaders = self.of == LEADER
 
     def misreading(self, box: Box) -> str:
         """What is wrong with lettering in a rectangle: "crossed", "nearer", or "" for nothing."""
@@ -78,18 +96,23 @@ class Surroundings:
     def judge(self, boxes: Floats) -> tuple[Flags, Floats]:
         """Where lettering in rectangles, shape (4, m), is read as another line's, and how vague it is."""
         m = boxes.shape[1]
-        runs = None if self.vector is None else _runs(self._label.text, self._label.height)
-        bad, vague = self._pairs(boxes).judge(boxes, np.full(m, self.anchor), [runs] * m)
+        runs = np.empty((4, 0)) if self.vector is None else _runs(self._label.text, self._label.height)
+        begins = np.zeros(m, int)
+        bad, vague = self._pairs(boxes).judge(boxes, begins + self.anchor, Runs(runs, begins, begins + runs.shape[1]))
         return bad, vague + SPOT * self.unsure
 
     def _pairs(self, boxes: Floats) -> Pairs:
         """Segments no farther from each rectangle than the anchor is: nothing beyond it is nearer."""
-        x0, y0, x1, y1 = (v[:, None] for v in boxes)
         gap = np.abs(nearest(self.anchor, boxes) - self.anchor)[:, None]
-        reach = np.maximum(gap + ROUNDING, 0.0 if self.vector is None else SEEN)
+        which, near = self._near(boxes, np.maximum(gap + ROUNDING, 0.0 if self.vector is None else SEEN))
+        return Pairs(which, self.a[near], self.b[near], self.of[near], self.own[near], self.twin[near], self.strong[near])
+
+    def _near(self, boxes: Floats, reach: Any) -> tuple[Numbers, Numbers]:
+        """Pairs of a rectangle, shape (4, m), and a segment within reach of it, by their numbers."""
+        x0, y0, x1, y1 = boxes[:, :, None]
         e0, f0, e1, f1 = self.sides
         which, near = ((e0 <= x1 + reach) & (e1 >= x0 - reach) & (f0 <= y1 + reach) & (f1 >= y0 - reach)).nonzero()
-        return Pairs(which, self.a[near], self.b[near], self.of[near], self.own[near], self.twin[near], self.strong[near])
+        return which, near
 
     def count_crossed(self, starts: Points, ends: Points) -> Numbers:
         """How many strong lines but its own each leader crosses, and lines it runs along or ends at.
@@ -98,10 +121,7 @@ class Surroundings:
         """
         if not len(self.a):
             return np.zeros(len(ends), int)
-        x0, y0, x1, y1 = (v[:, None] for v in sides(starts, ends))
-        e0, f0, e1, f1 = self.sides
-        reach = BESIDE + ROUNDING
-        which, near = ((e0 <= x1 + reach) & (e1 >= x0 - reach) & (f0 <= y1 + reach) & (f1 >= y0 - reach)).nonzero()
+        which, near = self._near(sides(starts, ends), BESIDE + ROUNDING)
         a, b, start, end = self.a[near], self.b[near], starts[which], ends[which]
         along, d = end - start, b - a
         parallel = np.abs((d * np.conj(along)).imag) < PARALLEL * np.abs(d) * np.abs(along)
@@ -109,8 +129,9 @@ class Surroundings:
         beside = np.minimum(apart, np.minimum(distance(a, b, start + 0.5 * along), distance(a, b, end)))
         leader, foreign = self.leaders[near], ~self.own[near]
         crossed = foreign & (self.strong[near] & crosses(a, b, start, end) | leader & meet(a, b, start, end))
-        count = (parallel & (beside < BESIDE)).astype(int) + crossed + (LED - 1) * (crossed & leader)
-        return np.asarray(np.bincount(which, count, len(ends)).astype(int) + LED * self.count_unsure(self.first_met(starts, ends)))
+        count = 1 * (parallel & (beside < BESIDE)) + crossed + (LED - 1) * (crossed & leader)
+        met = np.bincount(which, count, len(ends)).astype(int)
+        return met + LED * self.count_unsure(self.first_met(starts, ends))
 
     def first_met(self, starts: Points, ends: Points) -> Points:
         """Where an eye that comes along each leader meets what is named: at the edge of the head in which the leader ends."""
@@ -123,12 +144,12 @@ class Surroundings:
 
     def count_unsure(self, starts: Points) -> Numbers:
         """How many foreign strong lines, or other vectors on its line, a leader from each point, shape (m,), might name as well."""
-        return np.asarray((self._apart(starts) < UNSURE).sum(axis=1))
+        found: Numbers = np.add.reduce(self._apart(starts) < UNSURE, axis=1)
+        return found
 
     def _apart(self, points: Any) -> Floats:
         """Distances of points, shape (m,), to foreign strong lines and other vectors on the label's line, mm, shape (m, n)."""
-        others = self.strong & ~self.own | self.twin
-        return distance(self.a[others], self.b[others], points[:, None])
+        return distance(*self._rivals, points[:, None])
 
     def runs_together(self) -> bool:
         """Whether another line is one with the vector for a while where its name stands."""
@@ -159,6 +180,14 @@ def meet(a: Points, b: Points, start: Any, end: Any) -> Flags:
     return np.asarray(crosses(a, b, start, end) | ((distance(a, b, start) < UNSURE) & (np.abs(a - start) > UNSURE)))
 
 
+class Runs(NamedTuple):
+    """Rectangles, shape (4, k), of the parts of letterings from the corner of each: ``counts`` of each from ``begins`` on."""
+
+    boxes: Floats
+    begins: Numbers
+    counts: Numbers
+
+
 class Pairs(NamedTuple):
     """Segments ``a`` .. ``b`` of the marks ``of`` that may be near rectangles: ``which`` of them, in ascending order.
 
@@ -174,7 +203,7 @@ class Pairs(NamedTuple):
     twin: Flags
     strong: Flags
 
-    def judge(self, boxes: Floats, anchors: Points, runs: Sequence[Floats | None]) -> tuple[Flags, Floats]:
+    def judge(self, boxes: Floats, anchors: Points, runs: Runs) -> tuple[Flags, Floats]:
         """Where lettering in rectangles, shape (4, m), is read as another line's, and how vague it is: see :meth:`clearances`."""
         margins, (clear, hardly) = self.margins(boxes, anchors), self.clearances(boxes, runs)
         return (margins < -SLACK) | (clear < -EVEN), (clear < CLEARLY - EVEN) + 3.0 * hardly
@@ -185,17 +214,17 @@ class Pairs(NamedTuple):
         -inf where a line is between, inf where there is none but its own.
         """
         m, (which, a, b, _, own, *_) = boxes.shape[1], self
-        margins = np.full(m, inf)
+        margins, least = np.full((2, m), inf)
         if not len(which):
             return margins
         gaps, starts, ends = _to_box(a, b, boxes[:, which])
-        begin, end, first = nearest(anchors, boxes), anchors.copy(), (np.diff(which, prepend=-1)).nonzero()[0]
-        rows, gap = which[first], np.abs(begin - end)
-        least = np.full(m, inf)
+        first = _firsts(which)
+        begin, end, rows = nearest(anchors, boxes), anchors.copy(), which[first]
+        gap = np.abs(begin - end)
         own_gaps = np.where(own, gaps, inf)
         least[rows] = np.minimum.reduceat(own_gaps, first)
         margins[rows] = np.minimum.reduceat(np.where(own, inf, gaps), first)
-        at = np.full(m, -1)  # the first of its own that is nearest
+        at = np.zeros(m, int)  # the first of its own that is nearest
         hits = (own & (own_gaps == least[which])).nonzero()[0][::-1]
         at[which[hits]] = hits
         nearer = (least < gap).nonzero()[0]
@@ -209,43 +238,49 @@ class Pairs(NamedTuple):
             margins[row[crosses(a[between], b[between], begin[row], end[row])]] = -inf
         return margins
 
-    def clearances(self, boxes: Floats, runs: Sequence[Floats | None]) -> tuple[Floats, Numbers]:
+    def clearances(self, boxes: Floats, runs: Runs) -> tuple[Floats, Numbers]:
         """How much nearer the ink of a vector's letter is to its own line than to another strong one, mm; inf where none is seen.
 
         And how many other lines are as near as its own: of vectors on one line each has its name where it lies with the fewest.
 
-        ``runs`` are the rectangles of the lettering's parts from its lower left corner, (4, k) each; None where it names no vector.
+        ``runs`` are those of the lettering in each rectangle; none where it names no vector.
         """
         m = boxes.shape[1]
+        found, hardly = np.zeros(m) + inf, np.zeros(m, int)
+        if not runs.boxes.size:
+            return found, hardly
         x0, y0, x1, y1 = boxes[:, self.which]
         e0, f0, e1, f1 = sides(self.a, self.b)
-        counts = np.array([0 if run is None else run.shape[1] for run in runs])
         near = (e0 <= x1 + SEEN) & (e1 >= x0 - SEEN) & (f0 <= y1 + SEEN) & (f1 >= y0 - SEEN)
         # Of its own the vector alone, not the thin line on which it was laid off and which goes on beyond it.
         drawn = np.bincount(self.which[self.own & self.strong], minlength=m)[self.which] > 0
-        asked = (near & (self.strong | self.own & ~drawn) & (counts[self.which] > 0)).nonzero()[0]
-        alone = self.own & ~self.twin
-        both = (np.bincount(self.which[asked][alone[asked]], minlength=m) > 0) & (
-            np.bincount(self.which[asked][~alone[asked]], minlength=m) > 0)
-        asked = asked[both[self.which[asked]]]
-        found, hardly = np.full(m, inf), np.zeros(m, int)
+        asked = (near & (self.strong | self.own & ~drawn) & (runs.counts[self.which] > 0)).nonzero()[0]
+        which, alone = self.which[asked], (self.own & ~self.twin)[asked]
+        both = (np.bincount(which[alone], minlength=m) > 0) & (np.bincount(which[~alone], minlength=m) > 0)
+        asked = asked[both[which]]
         if not len(asked):
             return found, hardly
-        count = counts[self.which[asked]]
-        pair = np.repeat(asked, count)  # each segment and each run
-        which, own, twin = self.which[pair], alone[pair], self.twin[pair]
-        known = [run for run in runs if run is not None]
-        begins = np.cumsum(counts) - counts
-        run = begins[which] + np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
+        count = runs.counts[self.which[asked]]
+        pair = asked.repeat(count)  # each segment and each run
+        which, own, twin = self.which[pair], (self.own & ~self.twin)[pair], self.twin[pair]
+        run = runs.begins[which] + np.arange(len(pair)) - (count.cumsum() - count).repeat(count)
         x, y = boxes[:2, which]
-        gaps = _to_box(self.a[pair], self.b[pair], np.hstack(known)[:, run] + np.array([x, y, x, y]))[0]
-        first = np.diff(which, prepend=-1).nonzero()[0]
-        foreign, near = (np.minimum.reduceat(np.where(of, gaps, inf), first) for of in (~own & ~twin, own))
-        found[which[first]] = foreign - near
-        least = np.repeat(near, np.diff(first, append=len(which)))
-        lines = {*zip(*(v[~own & (gaps < least + HARDLY - EVEN)].tolist() for v in (which, self.of[pair])), strict=True)}
-        np.add.at(hardly, [row for row, _ in lines], 1)
+        gaps = _to_box(self.a[pair], self.b[pair], runs.boxes[:, run] + np.array([x, y, x, y]))[0]
+        first = _firsts(which)
+        rows = which[first]
+        foreign, nearest_own = (np.minimum.reduceat(np.where(of, gaps, inf), first) for of in (~own & ~twin, own))
+        found[rows] = foreign - nearest_own
+        least = np.zeros(m)
+        least[rows] = nearest_own
+        beside = (~own & (gaps < least[which] + HARDLY - EVEN)).nonzero()[0]
+        for row, _ in {*zip(which[beside].tolist(), self.of[pair[beside]].tolist(), strict=True)}:
+            hardly[row] += 1
         return found, hardly
+
+
+def _firsts(which: Numbers) -> Numbers:
+    """Where each number begins among numbers in ascending order."""
+    return np.concatenate(([True], which[1:] != which[:-1])).nonzero()[0]
 
 
 def read_well(ink: InkIndex, labels: Sequence[Label], boxes: Floats) -> Flags:
@@ -263,15 +298,16 @@ def read_well(ink: InkIndex, labels: Sequence[Label], boxes: Floats) -> Flags:
                    & (f1 >= (y0 - reach)[:, None])).nonzero()
     a, b, of = ink.a[near], ink.b[near], ink.of[near]
     own, twin = _belongings(ink, labels, subjects, which, a, b, of)
-    runs = [vector and _runs(label.text, label.height) for (_, vector), label in zip(subjects, labels, strict=True)]
+    runs = [_runs(label.text, label.height)[:, :None if vector else 0] for (_, vector), label in zip(subjects, labels, strict=True)]
+    counts = np.array([run.shape[1] for run in runs])
     pairs = Pairs(which, a, b, of, own, twin, ink.strong[near])
-    misread, vague = pairs.judge(boxes, p, runs)
+    misread, vague = pairs.judge(boxes, p, Runs(np.hstack(runs), counts.cumsum() - counts, counts))
     return np.asarray(~misread & (vague == 0))
 
 
 @lru_cache(maxsize=8192)
 def _runs(text: str, height: float) -> Floats:
-    return np.array([Box.around(run) for run in run_corners(text, height)]).T
+    return np.array([Box.around(run) for run in run_corners(text, height)]).reshape(-1, 4).T
 
 
 def _subject(ink: InkIndex, label: Label) -> _Subject:
@@ -287,7 +323,7 @@ def _belongings(ink: InkIndex, labels: Sequence[Label], subjects: Sequence[_Subj
     beside it: there lines that only pass by the anchor are foreign. What lies on a vector is named together with it.
     """
     at = np.array([label.anchor for label in labels])[which]
-    steps = np.zeros((len(labels), len(ink.marks) + 1), bool)  # the last is that of leaders
+    steps = np.zeros((len(labels), len(ink.marks)), bool)
     for k, (named, _) in enumerate(subjects):
         steps[k, named] = True
     found, apart = steps[which, of], distance(a, b, at)
@@ -298,23 +334,28 @@ def _belongings(ink: InkIndex, labels: Sequence[Label], subjects: Sequence[_Subj
     of_vector = np.array([vector is not None for _, vector in subjects])
     alone = alone & on | of_vector
     gaps = np.array([label.gap + SYMBOL for label in labels])[which]
-    # The leader of another label names nothing by itself, even if it comes from the same point.
-    own = found | ~alone[which] & (of != LEADER) & ((np.maximum(np.abs(a - at), np.abs(b - at)) <= gaps) | (apart <= AT))
+    own = found | ~alone[which] & ((np.maximum(np.abs(a - at), np.abs(b - at)) <= gaps) | (apart <= AT))
     twin = np.zeros(len(which), bool)
     if of_vector.any():
         beside = of_vector[which].nonzero()[0]
         u, v = np.array([vector or (inf, inf) for _, vector in subjects])[which[beside]].T
-        along = np.maximum(distance(u, v, a[beside]), distance(u, v, b[beside])) <= AT
+        along = _lies_along(u, v, a[beside], b[beside])
         for k in beside[along & ~own[beside]].tolist():
-            twin[k] = of[k] != LEADER and (by := ink.marks[of[k]].by) is not None and by.role == "vector"
+            twin[k] = (by := ink.marks[of[k]].by) is not None and by.role == "vector"
         own[beside] |= along
     return own, twin
+
+
+def _lies_along(u: Any, v: Any, a: Points, b: Points) -> Flags:
+    """Which segments a .. b lie on the line u .. v, or each on its own."""
+    return np.asarray(np.maximum(distance(u, v, a), distance(u, v, b)) <= AT)
 
 
 def nearest(p: Any, boxes: Floats) -> Points:
     """The point of each rectangle, shape (4, m), nearest to a point, or each to its own."""
     x0, y0, x1, y1 = boxes
-    return np.asarray(np.minimum(np.maximum(p.real, x0), x1) + 1j * np.minimum(np.maximum(p.imag, y0), y1))
+    found: Points = np.minimum(np.maximum(p.real, x0), x1) + 1j * np.minimum(np.maximum(p.imag, y0), y1)
+    return found
 
 
 def _named(ink: InkIndex, label: Label) -> list[int]:

@@ -6,6 +6,7 @@ Pages for a small printer, to be glued together, have crop marks, overlap lines,
 from __future__ import annotations
 
 from cmath import phase
+from itertools import product
 from math import ceil, pi
 from textwrap import shorten
 from typing import NamedTuple
@@ -114,23 +115,22 @@ def tiles(drawing: Drawing, paper: str = "a4", overlap: float = OVERLAP, bar: bo
     columns = max(ceil((drawing.width - overlap) / across - 1e-9), 1)
     rows = max(ceil((drawing.height - overlap) / down - 1e-9), 1)
     out = []
-    for row in range(1, rows + 1):
-        for column in range(1, columns + 1):
-            corner = complex((column - 1) * across, drawing.height - (row - 1) * down)  # upper left, on the sheet
-            part = Box(corner.real, corner.imag - (area.height), corner.real + area.width, corner.imag)
-            canvas = Canvas(of="tile")
-            _crop_marks(canvas, area)
-            if column < columns:
-                canvas.line(complex(area.x1 - overlap, area.y0), complex(area.x1 - overlap, area.y1), "twodot")
-            if row < rows:
-                canvas.line(complex(area.x0, area.y0 + overlap), complex(area.x1, area.y0 + overlap), "twodot")
-            label = tr("Row {row} of {rows}, column {column} of {columns}").format(
-                row=row, rows=rows, column=column, columns=columns)
-            canvas.text(complex(area.x0 + 2, area.y1 + 3), plain(shorten(f"{label}. {drawing.title}", 90, placeholder=" ...")), 2.5)
-            if bar:
-                control_bar(canvas, complex(area.x0 + 5, 6.0))
-            out.append(Tile(row, column, part, complex(area.x0, area.y1) - corner,
-                            Drawing(width, height, drawing.title, tuple(canvas.marks), drawing.author)))  # fmt: skip
+    for row, column in product(range(1, rows + 1), range(1, columns + 1)):
+        corner = complex((column - 1) * across, drawing.height - (row - 1) * down)  # upper left, on the sheet
+        part = Box(corner.real, corner.imag - (area.height), corner.real + area.width, corner.imag)
+        canvas = Canvas(of="tile")
+        _crop_marks(canvas, area)
+        if column < columns:
+            canvas.line(complex(area.x1 - overlap, area.y0), complex(area.x1 - overlap, area.y1), "twodot")
+        if row < rows:
+            canvas.line(complex(area.x0, area.y0 + overlap), complex(area.x1, area.y0 + overlap), "twodot")
+        label = tr("Row {row} of {rows}, column {column} of {columns}").format(
+            row=row, rows=rows, column=column, columns=columns)
+        canvas.text(complex(area.x0 + 2, area.y1 + 3), plain(shorten(f"{label}. {drawing.title}", 90, placeholder=" ...")), 2.5)
+        if bar:
+            control_bar(canvas, complex(area.x0 + 5, 6.0))
+        out.append(Tile(row, column, part, complex(area.x0, area.y1) - corner,
+                        Drawing(width, height, drawing.title, tuple(canvas.marks), drawing.author)))  # fmt: skip
     return out
 
 
@@ -169,7 +169,6 @@ def _on_edge(mark: Mark, drawing: Drawing) -> bool:
 
 
 def _crop_marks(canvas: Canvas, area: Box) -> None:
-    for x, dx in ((area.x0, -1), (area.x1, 1)):
-        for y, dy in ((area.y0, -1), (area.y1, 1)):
-            canvas.line(complex(x + dx, y), complex(x + 5 * dx, y), "thin")
-            canvas.line(complex(x, y + dy), complex(x, y + 5 * dy), "thin")
+    for (x, dx), (y, dy) in product(((area.x0, -1), (area.x1, 1)), ((area.y0, -1), (area.y1, 1))):
+        canvas.line(complex(x + dx, y), complex(x + 5 * dx, y), "thin")
+        canvas.line(complex(x, y + dy), complex(x, y + 5 * dy), "thin")

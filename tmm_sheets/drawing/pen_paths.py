@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
-from math import ceil, gcd, hypot
+from math import ceil, dist, gcd, hypot
 from typing import Any
 
 import numpy as np
@@ -370,13 +370,10 @@ def _length(points: Points) -> float:
 
 
 def _path_length(path: Path) -> float:
-    return sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(path))
+    return sum(dist(a, b) for a, b in pairwise(path))
 
 
 def _travel(paths: Iterable[Path], start: Step) -> float:
     """Travel of the raised pen, plotter steps."""
-    travel, place = 0.0, start
-    for path in paths:
-        travel += hypot(path[0][0] - place[0], path[0][1] - place[1])
-        place = path[-1]
-    return travel
+    some = list(paths)
+    return sum(dist(place, path[0]) for place, path in zip([start, *(path[-1] for path in some)], some, strict=False))

@@ -19,7 +19,7 @@ from tmm_sheets.drawing.lettering import PEN, extents, letter
 from tmm_sheets.drawing.marks import Arc, Box, Line, Mark, Points, Polyline, Text, flat, run
 from tmm_sheets.drawing.owners import AT
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.drawing.text_layout import CLEAR, Crowded, wrapped
+from tmm_sheets.drawing.text_layout import CLEAR, Crowded, bounds_of, wrapped
 
 THIN = 0.4
 """Width of the widest lines that yield, mm: axes; contours and vectors do not, labels keep off them."""
@@ -108,8 +108,7 @@ def _letters(texts: Sequence[Text]) -> _Letters | None:
     low, high = np.array([ink for _, ink in shown]).T
     u = np.cos(angle) + 1j * np.sin(angle)
     corners = at + u * np.array([low, high.real + 1j * low.imag, high, low.real + 1j * high.imag])
-    x, y = corners.real, corners.imag
-    return _Letters(at, u, low, high, np.array([x.min(axis=0), y.min(axis=0), x.max(axis=0), y.max(axis=0)]))
+    return _Letters(at, u, low, high, bounds_of(corners.T).T)
 
 
 def _under(line: Points, along: npt.NDArray[np.float64], letters: _Letters, near: npt.NDArray[np.intp]) -> Iterator[Stretch]:

@@ -176,7 +176,7 @@ def short_name(name: str) -> str:
     the surname.
     """
     words = name.split()
-    surname = _surname(words)
+    surname = words[0] if words and PATRONYMIC.search(words[-1]) else max(words, key=len, default="")
     lettered = (re.sub(r"^\W+", "", word) for word in words if word != surname)  # "Pat" is P.
     initials = "".join(word if word.endswith(".") else f"{word[0]}." for word in lettered if word)
     kept = (surname, *(f"{surname[:k]}{DOTS}" for k in range(len(surname) - 1, 0, -1)))
@@ -185,10 +185,6 @@ def short_name(name: str) -> str:
     ways = (*((way, room) for room in (NAME_WIDTH, NAME_WIDTH / NARROWEST, widest) for way in (name, shorter[0])),
             *((way, widest) for way in shorter))
     return next((way for way, room in ways if letter(plain(way), CAPTION).width <= room), shorter[-1])
-
-
-def _surname(words: list[str]) -> str:
-    return words[0] if words and PATRONYMIC.search(words[-1]) else max(words, key=len, default="")
 
 
 def _name_sizes(fields: Mapping[str, str]) -> tuple[float, ...]:
@@ -216,8 +212,7 @@ def _values(fields: Mapping[str, str], number: int, count: int) -> dict[str, tup
 
 
 def _rectangle(canvas: Canvas, box: Box, style: str) -> None:
-    corners = [complex(box.x0, box.y0), complex(box.x1, box.y0), complex(box.x1, box.y1), complex(box.x0, box.y1)]
-    canvas.polyline(corners, style, closed=True)
+    canvas.polyline(box.corners, style, closed=True)
 
 
 def _left(canvas: Canvas, cell: Box, text: str) -> float:

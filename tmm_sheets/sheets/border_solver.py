@@ -133,8 +133,8 @@ class Need:
 class BorderNode:
     """Several parts along x (``axis`` 0) or downwards (1) with ``gap`` between them, or a view.
 
-    Of a view: its ``need``, its number ``leaf``, the ``area`` that its arrangement means it to have. What the places cost in which
-    it was ``tried``, as long as no border in it moves: most of them are tried again.
+    Of a view: its ``need``, its number ``leaf``, the ``area`` that its arrangement means it to have. As long as no border in it
+    moves: what the places cost in which it was ``tried``, and in which by which steps it was found to be ``still``.
     """
 
     need: Need | None = None
@@ -145,11 +145,12 @@ class BorderNode:
     shares: list[float] = field(default_factory=list)
     gap: float = GAP
     tried: dict[tuple[float, float], Any] = field(default_factory=dict)
+    still: set[tuple[Any, ...]] = field(default_factory=set)
 
     def again(self) -> BorderNode:
         """The same once more for another tree: its borders move by themselves, what its places cost is known to both."""
         return replace(self, children=[child.again() for child in self.children], shares=[*self.shares],
-                       tried={} if self.shares else self.tried)
+                       tried={} if self.shares else self.tried, still=set())
 
     def every(self) -> Iterator[BorderNode]:
         """The node and all below it."""
@@ -172,8 +173,9 @@ class BorderNode:
 
         Where that is ``most`` or more, something from ``most`` on: the other views are not asked.
         """
-        found: float | None = self.tried.get((width, height))
-        if found is not None:
+        found: float
+        if (width, height) in self.tried:  # asked thousands of times: quicker than by a method
+            found = self.tried[width, height]
             return found
         if self.need is not None:
             cost, lacks = self.priced(width, height)
@@ -181,8 +183,8 @@ class BorderNode:
         else:
             found, free = 0.0, (height if self.axis else width) - self.gap * (len(self.children) - 1)
             for child, share in zip(self.children, self.shares, strict=True):
-                wide, high = (width, share * free) if self.axis else (share * free, height)
-                found += child.cost(wide, high, most - found)
+                size = share * free
+                found += child.cost(width, size, most - found) if self.axis else child.cost(size, height, most - found)
                 if found >= most:
                     return found
         self.tried[width, height] = found
@@ -201,11 +203,13 @@ class BorderNode:
             lacks += BELOW * need.below(width, height)
         return self.area * (self.area / need.ink(width, height)) ** 2, lacks
 
-    def settle(self, width: float, height: float, steps: Sequence[float]) -> bool:
+    def settle(self, width: float, height: float, steps: tuple[float, ...]) -> bool:
         """Move each border by that of some steps, to one side or the other, which costs least, then those inside the parts.
 
         Whether any moved.
         """
+        if not self.shares or (width, height, steps) in self.still:
+            return False
         free = (height if self.axis else width) - self.gap * (len(self.children) - 1)
         moved = False
         for i in range(len(self.children) - 1):
@@ -214,6 +218,9 @@ class BorderNode:
             moved |= child.settle(width, share * free, steps) if self.axis else child.settle(share * free, height, steps)
         if moved:
             self.tried.clear()
+            self.still.clear()
+        else:
+            self.still.add((width, height, steps))
         return moved
 
     def _move(self, i: int, steps: Sequence[float], width: float, height: float, free: float) -> bool:
@@ -272,22 +279,18 @@ class FigureNode(BorderNode):
 
     def cost(self, width: float, height: float, most: float = inf) -> float:
         """What the figure costs in what the form leaves of such a place that makes it cost least: no less than all of the place."""
-        found: tuple[float, ...] | None = self.tried.get((width, height))
-        if found is None:
+        if (width, height) not in self.tried:
             cost, lacks = self.children[0].priced(width, height)
             if cost + lacks >= most:
                 return cost + lacks
-            found = self._best(width, height, cost, lacks)
+            self._best(width, height, cost, lacks)
+        found: tuple[float, ...] = self.tried[width, height]
         return found[0] + found[1]
 
     def priced(self, width: float, height: float) -> tuple[float, float]:
         """What the figure costs with what is read with it, and what it lacks."""
         found = self.tried.get((width, height)) or self._best(width, height, *self.children[0].priced(width, height))
         return found[0], found[1]
-
-    def settle(self, width: float, height: float, steps: Sequence[float]) -> bool:
-        """There is nothing to move."""
-        return False
 
     def places(self, box: Box) -> dict[int, Box]:
         """Place of the figure, and of a text the whole width under it."""
@@ -339,6 +342,7 @@ def _shared(nodes: Sequence[BorderNode], shares: Sequence[Sequence[float]]) -> N
         node.shares = list(own)
         if own:
             node.tried.clear()
+            node.still.clear()
 
 
 def joined(axis: int, children: Sequence[BorderNode], sizes: Sequence[float], gap: float = GAP) -> BorderNode:
@@ -381,7 +385,7 @@ SHOWN = 20.0
 def fixed(box: Box) -> BorderNode:
     """What keeps the size it has."""
     size = (box.width, box.height)
-    return BorderNode(Need(least=size, most=size, drawn=lambda w, h: w * h), area=box.width * box.height)
+    return leaf(box, Need(least=size, most=size, drawn=lambda w, h: w * h))
 
 
 def reaching(box: Box, z: Any, d: Any, inset: tuple[float, float, float, float],

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import accumulate, compress, pairwise
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from tmm_sheets.drawing.canvas import Canvas, Label, Part
 from tmm_sheets.drawing.ink import polyline_inside
 from tmm_sheets.drawing.ink_index import dense
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Arc, Drawing, Line, Mark, Points, Text, View, flat
+from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Mark, Points, Polyline, Text, View, flat
 from tmm_sheets.drawing.paper import A1
 from tmm_sheets.drawing.placing import place
 from tmm_sheets.drawing.text_layout import Shortened, bounds_of, text_box, text_boxes
@@ -49,13 +49,14 @@ def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:
     found: dict[tuple[str, Box], Leaving] = {}
     views = _boxes_of_views(canvas)
     titles = {part.box: part.title for part in reversed(canvas.parts) if part.title}
+    rectangles = _rectangles(canvas.marks)
     for k, (lines, labels) in enumerate(_ink(canvas)):
         part = canvas.parts[k]
         if part.draw in ("title block", "labels"):
             continue
         beside = [other.box for other, v in zip(canvas.parts, views, strict=True)
                   if v is views[k] and other.title and _apart(other.box, part.box)]
-        bounds = _Bounds(part.box, views[k], frame, title_block)
+        bounds = _Bounds(canvas.marks, rectangles, part.box, views[k], frame, title_block)
         # What stands anywhere has free paper about it: its letters are led from there.
         anywhere = part.draw in VIEWS and (VIEWS[part.draw].near or VIEWS[part.draw].stands == "anywhere")
         out = [*bounds.left_by(lines, TOUCH, beside), *bounds.left_by(labels, inf if anywhere else BESIDE, [])]
@@ -69,18 +70,22 @@ def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:
 
 def _rectangles(marks: Sequence[Mark]) -> NDArray[np.float64]:
     """Rectangles that marks are in: x0, y0, x1, y1 of each, shape (n, 4); of an arc that of its circle."""
-    texts, found = iter(text_boxes([mark for mark in marks if isinstance(mark, Text)])), list[Any]()
-    for mark in marks:
-        if isinstance(mark, Line):
-            found.append((mark.a, mark.b, mark.a, mark.b))
-        elif isinstance(mark, Text):
-            found.append(next(texts))
-        elif isinstance(mark, Arc):
-            r = mark.radius * (1 + 1j)
-            found.append((mark.centre - r, mark.centre + r, mark.centre, mark.centre))
-        else:
-            found.append(Box.around(mark.points).corners)
-    return bounds_of(np.array(found, complex).reshape(-1, 4))
+    found = np.empty((len(marks), 4))
+    straight, texts = dict[int, tuple[complex, complex]](), dict[int, Text]()
+    for n, mark in enumerate(marks):
+        match mark:
+            case Line():
+                straight[n] = mark.a, mark.b
+            case Text():
+                texts[n] = mark
+            case Arc(centre=z, radius=r):
+                found[n] = z.real - r, z.imag - r, z.real + r, z.imag + r
+            case Polyline() | Fill():
+                found[n] = Box.around(mark.points)
+    for some, corners in ((straight, np.array([*straight.values()])), (texts, text_boxes([*texts.values()]))):
+        if some:
+            found[[*some]] = bounds_of(corners)
+    return found
 
 
 def _boxes_of_views(canvas: Canvas) -> list[Box]:
@@ -89,18 +94,18 @@ def _boxes_of_views(canvas: Canvas) -> list[Box]:
     return [*accumulate(boxes, lambda last, own: own or last, initial=Box(0.0, 0.0, 0.0, 0.0))][1:]
 
 
-def _ink(canvas: Canvas) -> list[tuple[list[Mark], list[Mark]]]:
-    """Lines and labels of every part; labels are set when all views are drawn, without their leader lines.
+def _ink(canvas: Canvas) -> list[tuple[list[int], list[int]]]:
+    """Numbers of the lines and labels of every part; labels are set when all views are drawn, without their leader lines.
 
     Notes, which have no anchor, take free paper anywhere. The circle of a detail has to be where it is: what it is drawn round has
     left its place there, and is told.
     """
-    found: list[tuple[list[Mark], list[Mark]]] = [
-        ([canvas.marks[n] for n in range(part.first, end) if n not in canvas.windows], [])
+    found: list[tuple[list[int], list[int]]] = [
+        ([n for n in range(part.first, end) if n not in canvas.windows], [])
         for part, end in zip(canvas.parts, [part.first for part in canvas.parts[1:]] + [len(canvas.marks)], strict=True)]
     for group in canvas.groups:
         if group.part >= 0 and group.anchor is not None:
-            found[group.part][1].extend(mark for mark in canvas.marks[group.first:group.end] if isinstance(mark, Text))
+            found[group.part][1].extend(n for n in range(group.first, group.end) if isinstance(canvas.marks[n], Text))
     return found
 
 
@@ -121,17 +126,19 @@ Departure = tuple[float, str, str]
 
 @dataclass(frozen=True)
 class _Bounds:
-    """What the marks of a part are to stay in, and the title block they are to stay out of."""
+    """What the marks of a part are to stay in, and the title block they are to stay out of; ``rectangles`` of all marks."""
 
+    marks: Sequence[Mark]
+    rectangles: NDArray[np.float64]
     box: Box
     view: Box
     frame: Box
     title_block: Box
 
-    def left_by(self, marks: Sequence[Mark], slack: float, beside: list[Box]) -> Iterator[Departure]:
-        """Departures of those marks that do not keep their place."""
-        out_of_box = (_rectangles(marks) - self.box) * (1, 1, -1, -1) < 0
-        for mark in compress(marks, np.logical_or.reduce(out_of_box, axis=1)):
+    def left_by(self, numbers: Sequence[int], slack: float, beside: list[Box]) -> Iterator[Departure]:
+        """Departures of those of some marks that do not keep their place."""
+        out_of_box = (self.rectangles[numbers] - self.box) * (1, 1, -1, -1) < 0
+        for mark in (self.marks[n] for n in compress(numbers, np.logical_or.reduce(out_of_box, axis=1))):
             p = text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)
             own = Box.around(p)
             ties = not isinstance(mark, Text) and mark.style == TIE

@@ -101,10 +101,7 @@ def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float
         count = np.zeros(np.add(inked.shape, 1), np.int32)
         for (i, j), sign in {(0, 0): 1, (nx, 0): -1, (0, ny): -1, (nx, ny): 1}.items():
             count[i:i + begins.shape[0], j:j + begins.shape[1]] += sign * begins
-        np.cumsum(count, axis=1, out=count)
-        for i in range(1, len(count)):
-            count[i] += count[i - 1]
-        gaps |= count[:-1, :-1] > 0
+        gaps |= sum_area(count)[1:-1, 1:-1] > 0
     return gaps
 
 

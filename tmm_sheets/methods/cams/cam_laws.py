@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.arithmetic import by_pieces, inner_slopes
+from tmm_sheets.construction.arithmetic import ascending, by_pieces, inner_slopes
 from tmm_sheets.construction.expression import Floats, Points, Reals, primitive
 from tmm_sheets.construction.step import Given
 from tmm_sheets.errors import CannotBuild
@@ -163,7 +163,7 @@ class _Pieces:
         CannotBuild
             when the follower would turn back inside the phase; ``key`` names what it is given by.
         """
-        shares = np.union1d(np.linspace(0, 1, 4001), self.starts)
+        shares = ascending(np.append(np.linspace(0, 1, 4001), self.starts))
         velocity = self.at(1, shares)
         if velocity.min() < -1e-9 * velocity.max():
             raise CannotBuild(tell("{key}: the follower turns back inside the phase, at the share {share:.3f}").format(

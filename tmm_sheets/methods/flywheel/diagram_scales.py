@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from tmm_sheets.construction.arithmetic import Curve
+from tmm_sheets.construction.arithmetic import Curve, ascending
 from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.scale import CURVE, MAIN, Scale, coarser, finer, handy, plain, reach
 from tmm_sheets.construction.step import Step, named
@@ -61,7 +61,7 @@ class Intervals:
     def edges(self) -> Floats:
         """Borders of the intervals: the positions, the jumps and kinks of the moment, and where it bends much, rad."""
         inside = [b for b in self.reduced.breaks if 0 < b < self.reduced.period]
-        edges = np.unique(np.concatenate((self.reduced.phi, inside)))
+        edges = ascending(np.concatenate((self.reduced.phi, inside)))
         # A break that falls on a position up to rounding is that position.
         keep = np.concatenate(([True], np.diff(edges) > 1e-9 * self.reduced.period))
         edges = edges[keep]
@@ -147,7 +147,7 @@ class Intervals:
     @cached_property
     def samples(self) -> Floats:
         """Angles for drawing curves and for finding contacts: close together, the edges among them, rad."""
-        return np.unique(np.concatenate((np.linspace(0, self.reduced.period, 721), self.edges)))
+        return ascending(np.concatenate((np.linspace(0, self.reduced.period, 721), self.edges)))
 
 
 _FACTORS = {"angle": ("mu_phi", "rad/mm"), "force": ("mu_F", "N/mm"), "moment": ("mu_M", "N*m/mm"), "work": ("mu_A", "J/mm"),

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.arithmetic import continuous_argmax
+from tmm_sheets.construction.arithmetic import ascending, continuous_argmax
 from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.rules import LINE_LINE, taken
 from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step
@@ -199,7 +199,7 @@ def limit(moment: Curve, inertia: Curve, borders: Floats, omega: float, delta: f
     contacts found between the nodes; the panels are halved until two results agree to ``tolerance``.
     This is the search for the contacts and the panels; what is told of it is a step of :func:`limit_segment`.
     """
-    samples = np.unique(np.concatenate((np.linspace(borders[0], borders[-1], 721), borders)))
+    samples = ascending(np.concatenate((np.linspace(borders[0], borders[-1], 721), borders)))
     j = np.asarray(inertia(samples))
     result = None
     for panels in (1, 2, 4, 8, 16):
@@ -309,7 +309,7 @@ class Energy:
         self.work = Quadrature(moment, borders, 32, 6)
         self.mean = self.work.total / (borders[-1] - borders[0])
         self.inertia = inertia
-        self.samples = np.unique(np.concatenate((np.linspace(borders[0], borders[-1], 721), borders)))
+        self.samples = ascending(np.concatenate((np.linspace(borders[0], borders[-1], 721), borders)))
         self._known: dict[bytes, tuple[Floats, Floats]] = {}
 
     def __call__(self, phi: Floats) -> tuple[Floats, Floats]:

@@ -18,7 +18,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from tmm_sheets.construction.arithmetic import Curve, inner_slopes, root
+from tmm_sheets.construction.arithmetic import Curve, ascending, inner_slopes, root
 from tmm_sheets.construction.expression import Directions, Floats, Points, Reals, Signs, primitive
 from tmm_sheets.construction.step import Given, Plan, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
@@ -208,7 +208,7 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
         check_turn(m, link)
         _refuse(m, tell("link {link} does not turn all the time").format(link=link))
     # The angle from the whole turn: more than 180 degrees would not show in the angles of the reversals alone.
-    turned = np.unique(np.append(np.linspace(0.0, TURN, SWEEP + 1), [r.begin for r in runs]))
+    turned = ascending(np.append(np.linspace(0.0, TURN, SWEEP + 1), [r.begin for r in runs]))
     swept = np.unwrap(angle(turned))
     turns = round(float(swept[-1] - swept[0]) / TURN)
     if not turns and any(r.sense for r in runs):

@@ -26,8 +26,9 @@ TITLE = marked("Law of motion in formulas")
 
 def _forms(law: PositionFunction) -> Iterator[Form]:
     """The formulas of both phases one under another or side by side, under a title as large as others or in smaller letters."""
+    phases = _phases(law)
     for height, step, most in WAYS:
-        rise, fall = ([line for text in lines for line in _broken(text, most, height)] for lines in _phases(law))
+        rise, fall = ([line for text in lines for line in _broken(text, most, height)] for lines in phases)
         for columns, titled in product(([rise + fall], [rise, fall]), (5.0, 3.5)):
             yield Form(columns, height, step, least=letter(tr(TITLE), titled).width)
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from tmm_sheets.construction.arithmetic import ascending
 from tmm_sheets.construction.equation import Quantity, digits_for, of_step
 from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
@@ -409,7 +410,7 @@ def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) ->
     g = graphs.Graph(complex(options["axis"], energy.origin.imag))
     points = plan["points"].value
     # The title stands in the widest gap between the lines that come down from the graph of J; too wide for it, it interrupts them.
-    cuts = np.unique(np.append(g(points).real, (g.origin.real, box.x1)))
+    cuts = ascending(np.append(g(points).real, (g.origin.real, box.x1)))
     widest = int(np.argmax(np.diff(cuts)))
     gap = _for_title(Box(float(cuts[widest]), box.y0, float(cuts[widest + 1]), box.y1), g.origin.real, box.x1)
     title = _beneath(canvas, canvas.title(gap, tr("Energy-mass diagram"), spare=LEADING), 5.0, s.energy, s.inertia)

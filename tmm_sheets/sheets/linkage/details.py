@@ -456,14 +456,13 @@ class Crowd(Dense):
                     (pen.arrow if abs(part[1] - at(tip)) < 1e-9 else pen.line)(*part, fill.style)
                 drawn.difference_update(own)
         for mark in (marks[n] for n in sorted(drawn)):
-            if isinstance(mark, Line):
-                if (part := seen(mark.a, mark.b)) is not None:
+            match mark:
+                case Line() if (part := seen(mark.a, mark.b)) is not None:
                     of(mark.by).line(*part, mark.style)
-            elif isinstance(mark, Arc):
-                if whole(flat(mark, 1.0)):
+                case Arc() if whole(flat(mark, 1.0)):
                     of(mark.by).arc(at(mark.centre), self.times(half) * mark.radius, mark.start, mark.end, mark.style)
-            elif isinstance(mark, Fill) and whole(mark.points):
-                of(mark.by).fill([at(complex(z)) for z in mark.points], mark.style)
+                case Fill() if whole(mark.points):
+                    of(mark.by).fill([at(complex(z)) for z in mark.points], mark.style)
 
 
 def _crowds(canvas: Canvas, polygons: Collection[int]) -> list[Crowd]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.construction.arithmetic import ascending
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.scale import CURVE, MAIN, Scale, handy, times
 from tmm_sheets.construction.step import Step, value_of
@@ -301,7 +302,7 @@ def load_graph(project: Project) -> Column:
     if not shown:
         return ()
     jumps = [j + s * HAIR for f in shown for j in f.jumps for s in (-1, 1)]  # both sides of each are drawn
-    turned = np.unique(np.clip(np.concatenate((np.linspace(0, cycle.period, SAMPLES), jumps)), 0, cycle.period))
+    turned = ascending(np.clip(np.concatenate((np.linspace(0, cycle.period, SAMPLES), jumps)), 0, cycle.period))
     letter, unit = ("F", tr("N")) if shown[0].point is not None else ("M", tr("N·m"))
 
     def at(f: Applied) -> graphs.Floats:
@@ -408,7 +409,7 @@ def indicator_reach(project: Project) -> tuple[list[complex], list[complex]]:
 
 def _angles_of_turns(project: Project) -> graphs.Floats:
     period = project.cycle.period
-    return np.unique(np.concatenate((np.linspace(0, period, round(period / (2 * pi)) * (SAMPLES - 1) + 1), project.cycle.turned)))
+    return ascending(np.concatenate((np.linspace(0, period, round(period / (2 * pi)) * (SAMPLES - 1) + 1), project.cycle.turned)))
 
 
 def draw_indicators(project: Project, s: PlayerStage) -> None:
@@ -444,7 +445,7 @@ def draw_indicators(project: Project, s: PlayerStage) -> None:
         out = top + 4.0 if one is shown[0] else 0.4 * top
         canvas.label(outer + one.side * out + 7.0 * away, str(scale), away, 3.5, 1.2)
         marks = s.frame(np.asarray(s.plan[name].value))
-        for mark in np.unique(np.round(marks, 6)):
+        for mark in ascending(np.round(marks, 6)):
             here = np.flatnonzero(np.abs(marks - mark) < 1e-5)
             y = max(float(one.ordinate(cycle.turned[i])) for i in here) / scale.mu
             s.position(int(here[0])).pen(name, "construction").line(mark, mark + one.side * (GAP + max(y, 0.0)), "thin")
