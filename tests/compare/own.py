@@ -15,7 +15,7 @@ import numpy as np
 
 from tmm_sheets import catalogue
 from tmm_sheets.backends import dxf, pdf, png
-from tmm_sheets.compare.cad import cad_drawing
+from tmm_sheets.compare.cad import cad_drawing, cad_file
 from tmm_sheets.compare.elements import elements
 from tmm_sheets.compare.photo import tracing
 from tmm_sheets.compare.photo.judging import judge
@@ -47,7 +47,7 @@ def by_image(project, n, path):
 
 def by_cad(project, n, path):
     """The same of a DXF file, as ``compare --dxf`` has them."""
-    found = cad_drawing.examine(project, n, path, None, 0.25)
+    found = cad_drawing.examine(project, range(n, n + 1), cad_file.read(path))
     said = [("note", note) for note in found.notes]
     for f in found.outcome.findings:
         e = f.element

@@ -8,7 +8,7 @@ import pytest
 from tests.few import few
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.elements import dashed, elements, known_sheet, said, sampled, views
+from tmm_sheets.compare.elements import dashed, elements, interruptions, known_sheet, said, sampled, views
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
 from tmm_sheets.drawing.ink import strokes
 from tmm_sheets.drawing.marks import Drawing, Fill, Text
@@ -78,6 +78,17 @@ def test_a_path_on_a_straight_line_is_a_line():
     line = only(canvas)
     assert line.kind == "line"
     assert line.length == pytest.approx(40.0)
+
+
+@pytest.mark.parametrize(("gaps", "there"), [((), []), (((0.125, 0.25),), [(0.75, 1.0)]),
+                                             (((0.0, 0.05), (0.7, 0.75)), [(0.5, 0.6), (0.0, 0.1)])])
+def test_gaps_of_a_path_there_and_back_are_told_by_their_places(gaps, there):
+    """From the middle to the right end, to the left one and back: a share of the path is none of the line."""
+    canvas = canvas_of()
+    canvas.polyline(np.array([50, 70, 30, 50]) + 50j)
+    canvas.marks[-1] = canvas.marks[-1]._replace(gaps=gaps)
+    line = only(canvas)
+    assert [pair for gap in interruptions(line) for pair in gap] == pytest.approx([x for gap in there for x in gap])
 
 
 def test_curve_circle_arc_dot_hatch():

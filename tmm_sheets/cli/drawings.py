@@ -76,8 +76,6 @@ def run_compare(
         if path.suffix.lower() not in (".html", ".pdf"):
             raise click.UsageError(tell("--report {file}: expected a name that ends in .html or .pdf").format(file=path))
 
-    from tmm_sheets.api import compared
-
     scheme = None
     if marks is not None or group is not None:
         from tmm_sheets.compare import group as whole
@@ -91,6 +89,8 @@ def run_compare(
 
             report = by_ruler.template(opened, folder, everything, progress.doing)
         elif group is not None:
+            from tmm_sheets.api import compared
+
             def judged(kind: Kind, project: Project, sheet: int | None, path: Path) -> Report:
                 return compared(project, kind, path, sheet, None, pencil, reading)
 
@@ -98,6 +98,8 @@ def run_compare(
             report = whole.compare(group, name, lambda other: opened if other == name else open_project(other, corrected), judged,
                                    scheme, progress.doing)
         else:
+            from tmm_sheets.api import compared
+
             kinds: dict[Kind, Path | None] = {"measured": measured, "image": image, "dxf": dxf}
             ((kind, drawing),) = [(kind, file) for kind, file in kinds.items() if file is not None]
             try:

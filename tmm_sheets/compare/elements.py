@@ -189,7 +189,13 @@ def dashed(element: Element) -> tuple[Points, ...]:
 def interruptions(e: Element) -> tuple[tuple[float, float], ...]:
     """Shares of the length of an element's line at which the sheet itself interrupts it, behind lettering."""
     ink = [m for m in e.marks if not isinstance(m, Fill | Text)]
-    return ink[0].gaps if len(ink) == 1 else ()
+    if len(ink) != 1 or not ink[0].gaps or e.kind != "line" or not isinstance(ink[0], Polyline):
+        return ink[0].gaps if len(ink) == 1 else ()
+    # A path there and back on a straight line: its gaps by their places.
+    z = np.asarray(ink[0].points)
+    along = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(z)))))
+    at = (np.interp(np.array(ink[0].gaps) * along[-1], along, z) - e.points[0]) / (e.points[1] - e.points[0])
+    return tuple((float(a), float(b)) for a, b in np.sort(at.real, axis=1))
 
 
 def said(markup: str) -> str:

@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import MarkGroup, Part
-from tmm_sheets.drawing.marks import Drawing, PlacedFrame
+from tmm_sheets.drawing.marks import Drawing, Mark, PlacedFrame
 from tmm_sheets.drawing.text_layout import Crowded
 from tmm_sheets.words import Remark, marked, tell
 
@@ -66,3 +66,8 @@ class Composed:
     dead: tuple[Remark, ...] = ()
     left_out: tuple[Remark, ...] = ()
     illegible: tuple[Remark, ...] = ()
+
+    @property
+    def marks(self) -> tuple[Mark, ...]:
+        """All marks of the drawing."""
+        return self.drawing.marks

@@ -116,7 +116,6 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     displaced_lines.incomplete(state)
     symbol_matching.filled(state)
     symbol_matching.arrows(state)
-    symbol_matching.heads_of_dimensions(state)
     cad_extras.left_out(state, cad_extras.FOUND_LAST)
     _leading_elsewhere(state)
     extras = cad_extras.extra(state)

@@ -9,16 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import cad_lettering
 from tmm_sheets.compare.cad.cad_comparison import (
     BEYOND,
-    CURVE_REACH,
     LOOSE_STYLES,
     CadFinding,
     Comparison,
@@ -27,11 +25,11 @@ from tmm_sheets.compare.cad.cad_comparison import (
     reach_of,
 )
 from tmm_sheets.compare.cad.cad_ink import Entity, normal
-from tmm_sheets.compare.cad.line_fit import KnownLines, Left, Numbers, common, extent, hanging_together, left, lines, pieces, shapes
+from tmm_sheets.compare.cad.line_fit import KnownLines, Left, Numbers, common, extent, hanging_together, left, pieces, shapes
 from tmm_sheets.compare.cad.symbol_matching import AT_TIP
 from tmm_sheets.compare.codes import Number, joined
 from tmm_sheets.compare.elements import Element, grouped
-from tmm_sheets.compare.findings import farthest, place, verdict
+from tmm_sheets.compare.findings import place, verdict
 from tmm_sheets.compare.placing import HINGE
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import marked_n
@@ -137,34 +135,27 @@ HEAP = 14.0
 """Width plus height of the smallest extra ink that is not put together with its neighbours, mm."""
 
 
-class _Claims(NamedTuple):
-    """Stretches of ink that elements claim: from, to, mm along all their strokes one after another, and which element's each is."""
-
-    begin: Numbers
-    end: Numbers
-    of: npt.NDArray[np.int64]
-
-
 def extra(state: Comparison) -> tuple[ExtraStroke, ...]:
     """The extra ink, longest first; the findings of elements that are too long are changed accordingly."""
     rest = left(state.theirs, state.claimed())
     cad_lettering.strange_ink(state, rest)
     free = _outside_zones(state, rest)
-    along = np.cumsum(state.theirs.length) - state.theirs.length + state.theirs.owner  # strokes lie a millimetre apart
-    claims = _claims(state, along)
+    length, owner = state.theirs.length, state.theirs.owner
+    along = np.cumsum(length) - length + owner  # strokes lie a millimetre apart
+    whole, first = np.bincount(owner, length), np.searchsorted(owner, np.arange(len(state.space.strokes)))
+    mostly = _mostly(state)
     found: list[tuple[list[Left], float]] = []
     excess: list[tuple[float, int, list[Left]]] = []
     for chain in _chains(along, free):
-        size = sum(free[r] for r in chain)
+        size, stroke = sum(free[r] for r in chain), int(owner[chain[0].piece])
         if size <= state.tolerance:
             continue
-        begin, end = along[chain[0].piece] + chain[0].a, along[chain[-1].piece] + chain[-1].b
-        before, after = (np.flatnonzero(np.abs(at) < TOUCHING) for at in (claims.end - begin, claims.begin - end))
-        if len(before) and len(after) and size < SHORT_GAP:
+        begin, end = (along[r.piece] + at - along[first[stroke]] for r, at in ((chain[0], chain[0].a), (chain[-1], chain[-1].b)))
+        if begin > TOUCHING and end < whole[stroke] - TOUCHING and size < SHORT_GAP:
             continue  # one line drawn through where ours are two
-        beside = before if len(before) else after
-        n = int(claims.of[beside[(claims.end - claims.begin)[beside].argmax()]]) if len(beside) else -1
-        if n >= 0 and state.found[n].verdict is not None and _continues(state, n, chain, claims, along):
+        mine, n = mostly.get(stroke, (0.0, -1))
+        sure = n >= 0 and state.found[n].verdict is not None and (mine >= 0.5 * state.whole(n) or mine >= 0.3 * whole[stroke])
+        if sure and _continues(state, n, chain):
             excess.append((sum(r.b - r.a for r in chain), n, chain))
         elif size > LEAST:
             found.append((chain, size))
@@ -174,6 +165,19 @@ def extra(state: Comparison) -> tuple[ExtraStroke, ...]:
     texts = (ExtraStroke("text", state.space.entities[w.entity], 0.0, w.at, max(w.width, 4.0) / 2, 1, w.text.strip())
              for k, w in enumerate(state.space.writings) if k not in state.used_writings and normal(w.text))
     return tuple(sorted((*_extra_lines(state, found), *_extra_areas(state, drawn), *texts), key=lambda x: -x.length))
+
+
+def _mostly(state: Comparison) -> dict[int, tuple[float, int]]:
+    """The element that most of a stroke belongs to, and how much, mm, by the number of the stroke."""
+    straight = np.array([e.kind == "line" for e in state.elements])
+    every, of = state.in_place, state.in_place_of
+    size = every.w1 - every.w0
+    keep = (size > 0.3) | ~straight[of]  # what only crosses a line is none of it
+    owned = np.array([(j, n, b - a) for n, parts in state.owned.items() for j, a, b in parts]).reshape(-1, 3)
+    piece, owner = (np.concatenate((x[keep], owned[:, k].astype(np.int64))) for k, x in ((0, every.theirs), (1, of)))
+    pairs, k = np.unique(np.stack((state.theirs.owner[piece], owner)), axis=1, return_inverse=True)
+    sums = np.bincount(k.ravel(), np.concatenate((size[keep], owned[:, 2])), pairs.shape[1])
+    return {int(stroke): (float(most), int(n)) for most, stroke, n in sorted(zip(sums, *pairs, strict=True))}
 
 
 def _outside_zones(state: Comparison, rest: list[Left]) -> dict[Left, float]:
@@ -228,29 +232,11 @@ def _chains(along: Numbers, rest: Iterable[Left]) -> Iterator[list[Left]]:
         yield chain
 
 
-def _claims(state: Comparison, along: Numbers) -> _Claims:
-    """Which elements claim which stretches; what only crosses a line is none of it."""
-    every, of = state.in_place, state.in_place_of
-    straight = np.array([e.kind == "line" for e in state.elements])
-    keep = (every.w1 - every.w0 > 0.3) | ~straight[of]
-    owned = np.array([(j, a, b, n) for n, parts in state.owned.items() for j, a, b in parts]).reshape(-1, 4)
-    piece = np.concatenate((every.theirs[keep], owned[:, 0].astype(np.int64)))
-    begin, end = (along[piece] + np.concatenate(x) for x in ((every.w0[keep], owned[:, 1]), (every.w1[keep], owned[:, 2])))
-    return _Claims(begin, end, np.concatenate((of[keep], owned[:, 3].astype(np.int64))))
-
-
-def _continues(state: Comparison, n: int, chain: list[Left], claims: _Claims, along: Numbers) -> bool:
+def _continues(state: Comparison, n: int, chain: list[Left]) -> bool:
     """Whether the chain goes on as the element does: straight, or along the same curve."""
-    # A line that only crosses or touches the element is another one.
     e, j = state.elements[n], chain[0].piece
-    stroke = np.flatnonzero(state.theirs.owner == state.theirs.owner[j])
-    first, whole = along[stroke[0]], float(state.theirs.length[stroke].sum())
-    here = (claims.of == n) & (claims.begin >= first) & (claims.end <= first + whole + TOUCHING)
-    mine = float((claims.end - claims.begin)[here].sum())
-    if e.kind not in ("line", "arc", "curve") or (mine < 0.5 * state.whole(n) and mine < 0.3 * whole):
-        return False
     if e.kind != "line":
-        return True
+        return e.kind in ("arc", "curve")
     u = (e.points[-1] - e.points[0]) / abs(e.points[-1] - e.points[0])
     d = state.theirs.b[j] - state.theirs.a[j]
     middle = complex(state.ends(chain[0]).mean())
@@ -267,12 +253,6 @@ def _too_long(state: Comparison, n: int, size: float, chain: list[Left]) -> None
     piece = state.theirs.b[r.piece] - state.theirs.a[r.piece]
     at = complex(state.theirs.a[r.piece] + (r.a + r.b) / 2 * piece / abs(piece))
     remark = codes.TOO_LONG_AT(by=Number(f"{size:.1f}"), place=place(at))
-    loop = _loop(state, n, size, at, chain) if e.kind != "line" else None
-    if loop is not None:
-        size, at = loop
-        if size <= old.deviation:
-            return  # it is farther off elsewhere
-        remark = farthest(size, at)
     deviation = max(old.deviation, size)
     judged = verdict(deviation, state.tolerance)
     if judged == "red" and e.style in LOOSE_STYLES and old.verdict != "red":
@@ -281,17 +261,6 @@ def _too_long(state: Comparison, n: int, size: float, chain: list[Left]) -> None
     entities = tuple(dict.fromkeys((*old.entities, *state.entities_of([r.piece]))))
     state.found[n] = replace(old, deviation=deviation, verdict=judged, remark=joined((old.remark, remark)),
                              at=where[0], reach=where[1], size=(old.size or 0.0) + size, entities=entities)
-
-
-def _loop(state: Comparison, n: int, size: float, at: complex, chain: list[Left]) -> tuple[float, complex] | None:
-    """How far, and where, a chain is off a curve beside it, as when one way of a path there and back is wrong."""
-    ends = np.concatenate([state.ends(r) for r in chain])
-    foot, _, near = lines(state.paths[n]).nearest(ends, CURVE_REACH)
-    ends_of_curve = np.concatenate([p[[0, -1]] for p in state.paths[n]])
-    if not near.all() or np.abs(ends_of_curve - at).min() <= size:
-        return None
-    off = np.abs(foot - ends)
-    return float(off.max()), complex(ends[off.argmax()])
 
 
 def _extra_lines(state: Comparison, extra: list[tuple[list[Left], float]]) -> Iterator[ExtraStroke]:

@@ -58,7 +58,7 @@ NARROW = 0.62
 """Average width of a letter in letter heights; the font is not known."""
 UNREAD = {"3DSOLID", "BODY", "REGION", "SURFACE", "MESH", "IMAGE", "OLE2FRAME", "ACAD_PROXY_ENTITY", "PDFUNDERLAY", "WIPEOUT"}
 CURVES = {"ARC", "CIRCLE", "ELLIPSE", "SPLINE"}
-"""Entities flattened by themselves: as paths they would become Bezier curves, off by 0.03 % of the radius."""
+"""Entities flattened by themselves: with few Bezier curves a turn they would be off by 0.03 % of the radius."""
 PRIMITIVE = {"LINE", "LWPOLYLINE", "CIRCLE", "ARC", "TEXT", "POLYLINE", "SPLINE", "SOLID", "HATCH", "MTEXT"}
 AS_DXF = marked("save the drawing as DXF (AutoCAD: DXFOUT or Save as; KOMPAS: Save as, DXF)")
 SMALLER = marked("save only the sheet itself: without other drawings, unused blocks purged, arrays and dense hatchings removed")
@@ -428,35 +428,16 @@ class _DxfReader:
             yield np.append(points, points[:1]) if e.closed and len(points) else points
         elif kind in CURVES:
             yield self._seen(list(e.flattening(max(fine, COARSEST * _extent(e, kind)))))
-        elif parts := _with_arcs(e, kind):
-            for part in parts:
-                yield from self._lines(part, part.dxftype(), fine)
         else:
-            yield from self._paths(e, kind, fine)
+            from ezdxf import path
 
-    def _paths(self, e: Any, kind: str, fine: float) -> Iterator[Points]:
-        from ezdxf import path
-
-        try:
-            made = path.make_path(e)
-        except TypeError:
-            self.unread[kind] += 1
-            return
-        for part in made.sub_paths():
-            yield self._seen(list(part.flattening(fine, segments=4)))
+            for part in path.make_path(e, segments=16).sub_paths():
+                yield self._seen(list(part.flattening(fine, segments=4)))
 
     def _seen(self, vertices: list[Any]) -> Points:
         """The vertices from above; that some have a height is noted."""
         self.raised = self.raised or any(abs(v.z) > 1e-6 for v in vertices)
         return _xy(vertices)
-
-
-def _with_arcs(e: Any, kind: str) -> list[Any]:
-    """The lines and arcs of a plane polyline; nothing where it has no arcs."""
-    if kind != "LWPOLYLINE" and not (kind == "POLYLINE" and e.is_2d_polyline):
-        return []
-    parts = list(e.virtual_entities())
-    return parts if any(part.dxftype() == "ARC" for part in parts) else []
 
 
 def _extent(e: Any, kind: str) -> float:

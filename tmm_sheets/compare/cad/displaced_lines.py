@@ -6,7 +6,8 @@ sheets and views (:func:`~tmm_sheets.compare.cad.line_fit.refine`), from its own
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +22,6 @@ from tmm_sheets.compare.cad.cad_comparison import (
     FARTHEST,
     LOOSE_STYLES,
     SIZE_OF_SYMBOL,
-    CadFinding,
     Comparison,
 )
 from tmm_sheets.compare.cad.line_fit import (
@@ -54,87 +54,78 @@ FULL = 0.97
 """Share of a shape drawn elsewhere that must have ink there."""
 
 
-# --- straight lines ---------------------------------------------------------------------------------------------------
-
-
 class _Trial(NamedTuple):
-    """A run that may have been drawn for a line: its number and its ends, ``far`` mm at most from those of the line.
+    """Ink that may have been drawn for an element: how far it is off, mm, which unclaimed stretches it is of, how much of each.
 
-    ``claimed`` tells that most of it is the ink of others.
+    ``claimed`` tells that most of it is the ink of others; ``take`` takes it for that of the element.
     """
 
     claimed: bool
-    far: float
+    off: float
     n: int
-    run: int
-    ends: tuple[complex, complex]
+    parts: npt.NDArray[np.int64]
+    ink: Numbers
+    take: Callable[[], None]
+
+
+def _assign(state: Comparison, trials: Iterable[_Trial], shared: float = 0.0) -> None:
+    """Give ink to the elements it is nearest to: at first to one, then to others that are as near as ``shared``, mm."""
+    used: set[int] = set()
+    some = sorted(trials, key=lambda trial: trial[:3])
+    for within in (0.0, shared) if shared else (0.0,):
+        for trial in some:
+            # What is in its place for the most part is not elsewhere.
+            if trial.n in state.found or trial.off > _missing(state, trial.n):
+                continue
+            if trial.off >= within and trial.ink[np.isin(trial.parts, list(used))].sum() > 0.5 * trial.ink.sum():
+                continue
+            used.update(trial.parts.tolist())
+            trial.take()
+
+
+# --- straight lines ---------------------------------------------------------------------------------------------------
 
 
 def straight(state: Comparison, rest: Sequence[Left]) -> None:
     """Find the lines: for each the unclaimed one whose ends are nearest."""
-    wanted = [n for n in state.inked if state.elements[n].kind == "line"]
-    if not wanted:
-        return
-    made = _Runs(state, rest)
-    trials = sorted((trial for n in wanted for trial in made.near(n)), key=lambda trial: (trial.claimed, trial.far))
-    used: set[int] = set()
-    for shared in (0.0, 3.0):  # in the second round one line may be that of several elements as near as this, mm
-        for trial in trials:
-            run = made.runs[trial.run]
-            if trial.n in state.found or (trial.far >= shared and not used.isdisjoint(run.parts)):
-                continue
-            if trial.far > _missing(state, trial.n):
-                continue  # more of it is in its place
-            used.update(run.parts)
-            _take_line(state, trial.n, trial.ends, [rest[k] for k in run.parts])
+    if any(state.elements[n].kind == "line" for n in state.inked):
+        _assign(state, _runs_near(state, rest), 3.0)
 
 
-class _Runs:
-    """Straight lines made of unclaimed stretches, those with gaps last, and how far they may reach at their ends."""
-
-    def __init__(self, state: Comparison, rest: Sequence[Left]) -> None:
-        self.state = state
-        free = pieces(state.theirs, rest)
-        unbroken = runs(free, 0.1)
-        plain = {r.parts for r in unbroken}
-        self.first_dashed = len(unbroken)
-        self.runs = unbroken + [r for r in runs(free, 4.5) if len(r.parts) > 1 and r.parts not in plain]
-        self.a, self.b = np.array([r.a for r in self.runs]), np.array([r.b for r in self.runs])
-        self.free = np.array([free.length[list(r.parts)].sum() for r in self.runs])
-        # Under stretches at its ends that other elements have claimed the line goes on.
-        under = np.array([_under(state, r, rest) for r in self.runs]).reshape(-1, 2)
-        self.before, self.after = under[:, 0], under[:, 1]
-        heads = heads_in(state.space)
-        self.tip_a, self.tip_b = self.a.copy(), self.b.copy()
-        extend(self.tip_a, self.tip_b, list(zip(heads.tip.tolist(), heads.way.tolist(), strict=True)), [])
-
-    def near(self, n: int) -> Iterator[_Trial]:
-        """The runs in the direction of a line and near it, either way round."""
-        p, q = (complex(z) for z in self.state.elements[n].points)
-        u = (q - p) / abs(q - p)
+def _runs_near(state: Comparison, rest: Sequence[Left]) -> Iterator[_Trial]:
+    """For each line straight runs of unclaimed stretches, to the tips of their heads, in its direction and near it."""
+    free = pieces(state.theirs, rest)
+    unbroken = runs(free, 0.1)
+    plain = {r.parts for r in unbroken}
+    some = unbroken + [r for r in runs(free, 4.5) if len(r.parts) > 1 and r.parts not in plain]
+    ends = np.array([(r.a, r.b, *_whole(state, r, rest)) for r in some], dtype=complex).reshape(-1, 4)
+    (a, b), (low, high), heads = ends[:, :2].T, ends[:, 2:].T, heads_in(state.space)
+    for one, other in ((a, b), (low, high)):
+        extend(one, other, list(zip(heads.tip.tolist(), heads.way.tolist(), strict=True)), [])
+    parts = [np.array(r.parts) for r in some]
+    for n in state.inked:
+        e = state.elements[n]
+        if e.kind != "line":
+            continue
+        p, q = (complex(z) for z in e.points)
         farthest = min(max(3.0, 0.35 * abs(q - p)), FARTHEST)
-        a, b, before, after = self.a, self.b, self.before, self.after
-        size = np.abs(b - a)
-        along = (b - a) / size
-        parallel = np.abs(((b - a) * np.conj(u)).imag) < 0.4 * size
-        if not line_type(self.state.elements[n].style).pattern:
-            parallel[self.first_dashed:] = False  # only a dashed line may have gaps
-        to_p, to_q = (((z - a) * np.conj(along)).real for z in (p, q))
-        forth = a + along * np.clip(to_p, before, 0), b + along * np.clip(to_q - size, 0, after)
-        back = b + along * np.clip(to_p - size, 0, after), a + along * np.clip(to_q, before, 0)
-        for c, d in (forth, back, (self.tip_a, self.tip_b), (self.tip_b, self.tip_a)):
+        near = np.abs(((b - a) / (q - p) * abs(q - p)).imag) < 0.4 * np.abs(b - a)
+        if not line_type(e.style).pattern:
+            near[len(unbroken):] = False  # only a dashed line may have gaps
+        for c, d in ((a, b), (b, a), (low, high), (high, low)):
             off = np.maximum(np.abs(c - p), np.abs(d - q))
-            for k in np.flatnonzero(parallel & (off < farthest)).tolist():
-                claimed = bool(self.free[k] < OWN * abs(d[k] - c[k]))
-                yield _Trial(claimed, float(off[k]), n, k, (complex(c[k]), complex(d[k])))
+            for k in np.flatnonzero(near & (off < farthest)).tolist():
+                ink, found = free.length[parts[k]], (complex(c[k]), complex(d[k]))
+                take = partial(_take_line, state, n, found, [rest[i] for i in parts[k]])
+                yield _Trial(bool(ink.sum() < OWN * abs(d[k] - c[k])), float(off[k]), n, parts[k], ink, take)
 
 
-def _under(state: Comparison, run: OverlapRun, rest: Sequence[Left]) -> tuple[float, float]:
-    """How far the strokes of a run go on before its beginning (negative) and after its end, mm."""
+def _whole(state: Comparison, run: OverlapRun, rest: Sequence[Left]) -> tuple[complex, complex]:
+    """Ends of the strokes of a run: under stretches that other elements have claimed the line goes on."""
     u = (run.b - run.a) / abs(run.b - run.a)
     j = [rest[k].piece for k in run.parts]
     t = ((np.concatenate((state.theirs.a[j], state.theirs.b[j])) - run.a) * np.conj(u)).real
-    return min(float(t.min()), 0.0), max(float(t.max()) - abs(run.b - run.a), 0.0)
+    return run.a + t.min() * u, run.a + t.max() * u
 
 
 def _take_line(state: Comparison, n: int, found: tuple[complex, complex], parts: Sequence[Left]) -> None:
@@ -171,17 +162,6 @@ def _whole_stretch(state: Comparison, r: Left, c: complex, d: complex) -> tuple[
 # --- shapes -----------------------------------------------------------------------------------------------------------
 
 
-class _Laid(NamedTuple):
-    """A shape laid on free ink: how far it is off, mm, the finding on that, and the stretches of the ink: numbers, from, to."""
-
-    off: float
-    n: int
-    finding: CadFinding
-    parts: npt.NDArray[np.int64]
-    w0: Numbers
-    w1: Numbers
-
-
 def shapes(state: Comparison, rest: Sequence[Left]) -> None:
     """Find curves, arcs and circles, and lines that no single run was drawn for, by the ink along them; what is nearest first."""
     free = pieces(state.theirs, rest)
@@ -196,15 +176,7 @@ def shapes(state: Comparison, rest: Sequence[Left]) -> None:
         by = middles - e.middle
         alike = (np.abs(by) < ELSEWHERE) & (np.abs(sizes - size) < GROWN * size) & (e.kind != "line")
         trials += [laid for start in (0j, *by[alike].tolist()) if (laid := _laid(state, n, free, rest, start)) is not None]
-    used: set[int] = set()
-    for laid in sorted(trials, key=lambda laid: laid[:2]):
-        ink = laid.w1 - laid.w0
-        if laid.n in state.found or ink[np.isin(laid.parts, list(used))].sum() > 0.5 * ink.sum():
-            continue
-        used.update(laid.parts.tolist())
-        state.found[laid.n] = laid.finding
-        state.claim([(rest[k].piece, rest[k].a + a, rest[k].a + b) for k, a, b in zip(
-            laid.parts.tolist(), laid.w0.tolist(), laid.w1.tolist(), strict=True)], laid.n)
+    _assign(state, trials)
 
 
 def _strokes(state: Comparison, free: KnownLines) -> tuple[Points, Numbers]:
@@ -216,7 +188,7 @@ def _strokes(state: Comparison, free: KnownLines) -> tuple[Points, Numbers]:
     return np.array([b.centre for b in boxes], dtype=complex), np.array([b.width + b.height for b in boxes])
 
 
-def _laid(state: Comparison, n: int, free: KnownLines, rest: Sequence[Left], start: complex) -> _Laid | None:
+def _laid(state: Comparison, n: int, free: KnownLines, rest: Sequence[Left], start: complex) -> _Trial | None:
     """An element laid on free ink, from its place or from so far beside it; None where less than half of it has ink there."""
     e, whole = state.elements[n], state.whole(n)
     ours, _, base = state.ours([n])
@@ -236,8 +208,6 @@ def _laid(state: Comparison, n: int, free: KnownLines, rest: Sequence[Left], sta
     worst = float(np.abs(off[there]).max())
     counted = max(abs(grown) - SIZE_OF_SYMBOL, 0.0) if e.radius <= HINGE else abs(grown)
     as_a_whole = abs(shift) + counted
-    if max(worst, as_a_whole) > _missing(state, n):
-        return None  # more of it is in its place
     inked = state.inked[n] if as_a_whole <= state.tolerance else []
     parts = union([*zip(s0.tolist(), s1.tolist(), strict=True), *inked], state.gap(e) + ONE_PLACE)
     missing = max((b - a for a, b in gaps(parts, whole) if b - a > max(state.tolerance, 0.4)), default=0.0)
@@ -249,7 +219,12 @@ def _laid(state: Comparison, n: int, free: KnownLines, rest: Sequence[Left], sta
     kept = np.unique(using[there])
     finding = state.finding(n, max(worst, as_a_whole, missing), joined(said), shift=shift, size=grown or None,
                             entities=state.entities_of(rest[k].piece for k in near.theirs[kept].tolist()))
-    return _Laid(finding.deviation, n, finding, near.theirs[kept], near.w0[kept], near.w1[kept])
+    def take() -> None:
+        state.found[n] = finding
+        state.claim([(rest[k].piece, rest[k].a + float(near.w0[i]), rest[k].a + float(near.w1[i])) for i in kept.tolist()
+                     for k in (int(near.theirs[i]),)], n)
+
+    return _Trial(False, max(worst, as_a_whole), n, near.theirs[kept], near.w1[kept] - near.w0[kept], take)
 
 
 def _offsets(t: Numbers, s0: Numbers, s1: Numbers, near: Overlaps) -> tuple[Numbers, npt.NDArray[np.int64]]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from enum import IntEnum, auto
 from math import pi
 from typing import NamedTuple
 
@@ -42,86 +41,54 @@ class Heads:
 
 
 class _Arrow(NamedTuple):
-    """An arrow as it was found: element, one of its heads, and where its tip and the end of its line behind it are, mm."""
+    """An arrow as it was found: element, where the tip of one of its heads and the end of its line behind it are, mm.
+
+    ``elsewhere`` is how far off an arc may have its head that is drawn elsewhere, mm.
+    """
 
     n: int
     finding: CadFinding
     tip: complex
     tail: complex
+    straight: bool
     alone: bool
-    curved: bool
-
-    @property
-    def way(self) -> complex:
-        """The direction it points in."""
-        return (self.tip - self.tail) / max(abs(self.tip - self.tail), 1e-9)
-
-
-class _At(IntEnum):
-    """How a head may be that of an arrow, the likeliest first."""
-
-    IN_PLACE = auto()
-    """at its tip"""
-    BACKWARDS = auto()
-    """at its tail, pointing away"""
-    ALONG = auto()
-    """anywhere on its line"""
-    BESIDE = auto()
-    """beside its tip"""
-    WITH_ARC = auto()
-    """beside the tip of an arc that is drawn elsewhere"""
+    elsewhere: float
 
 
 def arrows(state: Comparison) -> None:
-    """Check that arrows have their heads, at the right ends."""
-    heads = heads_in(state.space)
-    wanted = list(_wanted(state))
-    pairs = [(how, off, i, k) for i, arrow in enumerate(wanted) for how, off, k in _of_arrow(arrow, heads)]
-    in_place = {k for how, _, _, k in pairs if how is _At.IN_PLACE}
-    # A head that several may have, for they lie upon one another, is that of the arrow with no other one near its tip.
-    others = {i: min((off for how, off, m, k in pairs if m == i and how is _At.ALONG and k not in in_place), default=np.inf)
-              for i in range(len(wanted))}
-    pairs.sort(key=lambda x: (x[0], -others[x[2]] if x[0] is _At.BACKWARDS else x[1]))
-    taken: dict[int, complex] = {}
-    done: set[int] = set()
-    for how, off, i, k in pairs:
-        arrow = wanted[i]
-        shared = how is _At.IN_PLACE and k in taken and abs(taken[k] - arrow.tip) < ONE_PLACE
-        if i in done or (k in taken and not shared):
-            continue
-        if how is _At.BESIDE and not _drawn_aside(state, arrow, complex(heads.tip[k])):
-            continue
-        taken[k] = arrow.tip
-        done.add(i)
-        if how is _At.BACKWARDS:
-            _tell(state, arrow, codes.POINTS_BACK(), state.elements[arrow.n].length)
-        elif how in (_At.IN_PLACE, _At.ALONG) and state.found[arrow.n].verdict == "green" and off > state.tolerance:
-            # Only the head tells where the line ends.
-            state.found[arrow.n] = replace(arrow.finding, deviation=off, verdict=verdict(off, state.tolerance),
-                                           remark=codes.TIP_OFF(by=Number(f"{off:.2f}")), at=arrow.tip, reach=5.0)
-    theirs = state.theirs
-    barbs = (np.bincount(theirs.owner, theirs.length)[theirs.owner] < 16.0) & (theirs.length < 8.0) & (theirs.length > 1.0)
+    """Check that arrows have their heads, at the right ends: a head is that of the arrow whose tip it is at, if there is any."""
+    heads, wanted = heads_in(state.space), list(_wanted(state))
+    if not len(heads.area) or not wanted:
+        return
+    tip, tail, straight, alone, elsewhere = (np.array([arrow[k] for arrow in wanted]).reshape(-1, 1) for k in range(2, 7))
+    way = (tip - tail) / np.maximum(np.abs(tip - tail), 1e-9)
+    same, along, off = (heads.way * np.conj(way)).real, (heads.tip - tail) * np.conj(way), np.abs(heads.tip - tip)
+    there = (off < AT_TIP) & (same > AHEAD)
+    taken = np.zeros(len(heads.area), bool)
+    taken[np.where(there, off, np.inf).argmin(axis=1)[there.any(axis=1)]] = True
+    missed = ~there.any(axis=1, keepdims=True) & ~taken
+    on = missed & (same > AHEAD) & straight & (np.abs(along.imag) < BESIDE) & (along.real > 2.0) & (off < BEYOND)
+    on |= missed & (same > TURNED) & (off < elsewhere)
+    back = missed & (same < -AHEAD) & alone & (np.abs(heads.tip - tail) < AT_TIP)
+    beside = missed & (same > AHEAD) & alone & (off < np.clip(0.35 * np.abs(tip - tail), 3.0, FARTHEST))
+    # Heads that are drawn with strokes: two short lines that meet at a tip.
+    ends = np.concatenate((state.theirs.a, state.theirs.b))
+    short = np.tile((np.bincount(state.theirs.owner, state.theirs.length)[state.theirs.owner] < 16.0) & (state.theirs.length < 8.0)
+                    & (state.theirs.length > 1.0), 2)
     for i, arrow in enumerate(wanted):
-        ends = barbs & ((np.abs(theirs.a - arrow.tip) < 0.6) | (np.abs(theirs.b - arrow.tip) < 0.6))
-        if i not in done and len(heads.area) and ends.sum() < 2:  # two short lines that meet at a tip are a head
+        if there[i].any() or on[i].any():
+            by = float(off[i][there[i] | on[i]].min())
+            # Only the head tells where the line ends.
+            if state.found[arrow.n].verdict == "green" and by > state.tolerance and arrow.straight:
+                state.found[arrow.n] = replace(arrow.finding, deviation=by, verdict=verdict(by, state.tolerance),
+                                               remark=codes.TIP_OFF(by=Number(f"{by:.2f}")), at=arrow.tip, reach=5.0)
+        elif back[i].any():
+            _tell(state, arrow, codes.POINTS_BACK(), state.elements[arrow.n].length)
+        elif beside[i].any() and _drawn_aside(state, arrow, complex(heads.tip[k := np.where(beside[i], off[i], np.inf).argmin()])):
+            taken[k], beside[:, k] = True, False
+        elif (np.abs(ends[short] - arrow.tip) < 0.6).sum() < 2:
             _tell(state, arrow, codes.NO_HEAD(), 2 * state.tolerance)
-    state.used_areas.update(int(heads.area[k]) for k in taken)
-
-
-def _of_arrow(arrow: _Arrow, heads: Heads) -> Iterator[tuple[_At, float, int]]:
-    """The heads that may be that of an arrow: how, how far from its tip or its tail, mm, and their numbers."""
-    off, size = np.abs(heads.tip - arrow.tip), abs(arrow.tip - arrow.tail)
-    same = (heads.way * np.conj(arrow.way)).real
-    t = (heads.tip - arrow.tail) * np.conj(arrow.way)
-    elsewhere = 2 * AT_TIP + arrow.finding.deviation if arrow.curved and arrow.finding.verdict != "green" else 0.0
-    straight = not arrow.curved
-    ways = ((_At.IN_PLACE, (off < AT_TIP) & (same > AHEAD)),
-            (_At.BACKWARDS, (np.abs(t) < AT_TIP) & (same < -AHEAD) & arrow.alone),
-            (_At.ALONG, (np.abs(t.imag) < BESIDE) & (t.real > 2.0) & (t.real < size + BEYOND) & (same > AHEAD) & straight),
-            (_At.BESIDE, (off < min(max(3.0, 0.35 * size), FARTHEST)) & (same > AHEAD) & arrow.alone),
-            (_At.WITH_ARC, (off < min(elsewhere, FARTHEST)) & (same > TURNED)))
-    for how, there in ways:
-        yield from ((how, float(off[k]), k) for k in np.flatnonzero(there).tolist())
+    state.used_areas.update(heads.area[taken | (back | on).any(axis=0)].tolist())
 
 
 def heads_in(space: DrawingSpace) -> Heads:
@@ -145,7 +112,8 @@ def _wanted(state: Comparison) -> Iterator[_Arrow]:
             tail = complex(other) if e.kind == "line" and not outside else tip + 3 * back
             if finding.shift is not None and finding.verdict != "green" and e.kind == "line":
                 tip, tail = _found_at(e.middle, tip, finding), _found_at(e.middle, tail, finding)
-            yield _Arrow(n, finding, tip, tail, e.kind == "line" and len(e.fills) == 1, e.kind == "arc")
+            far = min(2 * AT_TIP + finding.deviation, FARTHEST) if e.kind == "arc" and finding.verdict != "green" else 0.0
+            yield _Arrow(n, finding, tip, tail, e.kind == "line", e.kind == "line" and len(e.fills) == 1, far)
 
 
 def _found_at(middle: complex, z: complex, finding: CadFinding) -> complex:
@@ -218,16 +186,6 @@ def filled(state: Comparison) -> None:
     for n in wanted.keys() - state.found.keys():
         remark = codes.DOT_MISSING() if state.elements[n].kind == "circle" else codes.NOT_FILLED()
         state.found[n] = state.finding(n, 2 * state.tolerance, remark, missing=True)
-
-
-def heads_of_dimensions(state: Comparison) -> None:
-    """Claim the arrow heads of dimensions that are not compared, where these would stand: they are no extra ink."""
-    for n, e in enumerate(state.elements):
-        finding = state.found.get(n)
-        if e.role == "dimension" and finding is not None and finding.verdict is None and len(state.areas):
-            for head in e.fills:
-                off = np.abs(state.areas - complex(head.mean()))
-                state.used_areas.update(np.flatnonzero(off < 2.0).tolist())
 
 
 def hatching(state: Comparison) -> None:

@@ -328,24 +328,26 @@ def _times(z: Any, by: tuple[float, float], kind: Kind) -> Any:
 def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
     """Everything on the sheets of a project that can be measured, and its results.
 
-    The sheets are drawn for it: they decide on the scale factors and on the positions that are shown.
+    The views of its sheets decide on the scale factors and on the positions that are shown; letters need no places for that.
     """
     from tmm_sheets.sheets import sheet
     from tmm_sheets.sheets.linkage import kinematic_frames
 
     found = Measurables()
     shown: set[str] = set()
-    attempt = sheet.every(project, say, steps=True)
+    attempt = sheet.every(project, say, steps=True) if project.shown else sheet.views(project)
     problem = attempt.problem()
     if problem is not None:
+        if not attempt.drawn:
+            raise problem
         found.notes.append(str(problem))
-    for composed in attempt.drawn.values():
-        for key, scale in composed.scales.items():
+    for drawn in attempt.drawn.values():
+        for key, scale in drawn.scales.items():
             found.scales.setdefault(key, scale)
-        shown |= {str(mark.of) for mark in composed.drawing.marks}
-        if "velocities" in composed.scales:  # what has a factor of its own is not asked for: errors are reckoned with one
-            own = kinematic_frames.factors_of(composed.frames, project.study.velocities.plan).items()
-            shown -= {f"velocity plan {project.cycle.labels[i]}" for i, mu in own if mu != composed.scales["velocities"].mu}
+        shown |= {str(mark.of) for mark in drawn.marks}
+        if "velocities" in drawn.scales:  # what has a factor of its own is not asked for: errors are reckoned with one
+            own = kinematic_frames.factors_of(drawn.frames, project.study.velocities.plan).items()
+            shown -= {f"velocity plan {project.cycle.labels[i]}" for i, mu in own if mu != drawn.scales["velocities"].mu}
     there = project.parts
     if "positions" in there:
         linkage_items.collect(project, found, shown)
