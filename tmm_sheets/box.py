@@ -61,6 +61,10 @@ class Box(NamedTuple):
         """The rectangle moved."""
         return Box(self.x0 + by.real, self.y0 + by.imag, self.x1 + by.real, self.y1 + by.imag)
 
+    def within(self, other: Box) -> Box:
+        """What of the rectangle lies in another one."""
+        return Box(max(self.x0, other.x0), max(self.y0, other.y0), min(self.x1, other.x1), min(self.y1, other.y1))
+
     def contains(self, p: complex, slack: float = 0.0) -> bool:
         """True when the point lies inside or at most ``slack`` outside."""
         return self.x0 - slack <= p.real <= self.x1 + slack and self.y0 - slack <= p.imag <= self.y1 + slack

@@ -323,7 +323,7 @@ def _project(context: click.Context) -> Project | None:
 
 
 _BY_NAME: dict[str, Completer] = {
-    "project": projects, "projects": projects, "families": families, "machine": plotters, "formats": formats, "parts": parts,
+    "project": projects, "projects": projects, "families": families, "plotter": plotters, "formats": formats, "parts": parts,
     "sheets": sheets, "sheet": sheets, "result": results,
 }
 _BY_METAVAR: dict[str, Completer] = {

@@ -214,6 +214,20 @@ def _write(path: Path, data: Content) -> None:
         data(file)
 
 
+def zipped(members: Mapping[str, bytes]) -> bytes:
+    """A zip file of members in their order: the same bytes at any time on every system, of the earliest date that it knows."""
+    import zipfile
+    from io import BytesIO
+
+    data = BytesIO()
+    with zipfile.ZipFile(data, "w") as archive:
+        for name, content in members.items():
+            member = zipfile.ZipInfo(name)
+            member.external_attr, member.create_system = 0o644 << 16, 3
+            archive.writestr(member, content, zipfile.ZIP_DEFLATED)
+    return data.getvalue()
+
+
 def sweep(path: Path) -> None:
     """Remove what killed processes left of a file: passing files of processes that are no more, here or, after a day, elsewhere."""
     with suppress(OSError):

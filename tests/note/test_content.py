@@ -10,7 +10,7 @@ import pytest
 
 from tests.few import seldom
 from tests.note.opened import composed, opened
-from tmm_sheets import results, words
+from tmm_sheets import kept, results, words
 from tmm_sheets.construction.formula import Letters, Words
 from tmm_sheets.drawing.styles import line_types
 from tmm_sheets.meanings import tables_of
@@ -179,6 +179,13 @@ def test_numbers_are_those_of_the_steps(note, project):
         if n.position in at and len(values) == len(at) and not np.iscomplexobj(values):
             checked += isclose(abs(n.value), abs(float(values[at.index(n.position)])), rel_tol=1e-9, abs_tol=1e-12)
     assert checked > 150
+
+
+def test_a_note_is_the_same_with_sheets_drawn_now_and_kept():
+    """A sheet that was kept makes no steps: the note has all those that results come from."""
+    with kept.unused():
+        now = composed(opened("tests/projects/geneva.toml"))
+    assert composed(opened("tests/projects/geneva.toml")) == composed(opened("tests/projects/geneva.toml")) == now
 
 
 def test_numbers_as_written_are_their_values(note):

@@ -19,6 +19,7 @@ from tmm_sheets.cli.options import (
     REMAKE,
     SHEETS,
     among,
+    finish,
     folder_of,
     formats_of,
     on_paper,
@@ -57,7 +58,7 @@ if TYPE_CHECKING:
 @SHEETS
 @formats_of("dxf,pdf")
 @option("--dpi", type=click.FloatRange(10, 1200), default=150, show_default=True, help="Dots per inch of PNG.")
-@option("--plotter", "machine", metavar="NAME", callback=plotter,
+@option("--plotter", metavar="NAME", callback=plotter,
               help="Plotter for HPGL: a shipped one or a file.  [default: a1]")
 @option("--text", type=click.Choice(["live", "librecad", "strokes"]), default="live", show_default=True,
               help="Lettering and dashes of DXF: to be worked with, the same with our font for LibreCAD, or drawn exactly.")
@@ -75,13 +76,13 @@ if TYPE_CHECKING:
 @option("--open", "show_files", is_flag=True, help="Open what was made: one file, or its folder.")
 @option("--explain", is_flag=True, help="Also tell what was built and evaluated, and how long it took.")  # fmt: skip
 def run_build(
-    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], dpi: float, machine: Plotter | None, text: str,
+    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], dpi: float, plotter: Plotter | None, text: str,
     **asked: Any,
 ) -> None:
     from tmm_sheets.output.build_store import place
     from tmm_sheets.output.building import Order
 
-    settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": machine}, "dxf": {"text": text},
+    settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": plotter}, "dxf": {"text": text},
                                            "pdf": {"date": files.source_date()}}  # fmt: skip
     order = Order(**asked, settings=settings, names=title_names())
     single = len(projects) == 1 and not families and not lists
@@ -186,8 +187,7 @@ def build_one(project: str, order: Order) -> None:
         from tmm_sheets import explain as report
 
         click.echo(report.text(built.opened, built.drawings, watch, askers))
-    if built.refused is not None:
-        raise built.refused
+    finish(variant, (), (), built.refused)
 
 
 def _pictures(opened: Project, order: Order) -> dict[str, bytes]:
@@ -319,11 +319,7 @@ def run_defence(project: str, corrected: bool, sheets: tuple[int, ...], output: 
     paths, kept = put(folder, {f"overlay{n}.pdf": render_coloured([(of.overlay, RED)]) for n, of in found.items()}, force)
     for n, of in found.items():
         click.echo("\n".join(of.said(n)))
-    for path in paths:
-        click.echo(path)
-    tell_all(opened.variant, kept)
-    if problem is not None:
-        raise problem
+    finish(opened.variant, paths, kept, problem)
 
 
 @PROJECT
@@ -344,10 +340,8 @@ def run_note(project: str, corrected: bool, formats: tuple[str, ...], output: Pa
     with Progress() as progress:
         written = writing.write(opened, formats, progress.doing)
         paths, kept = put(folder, written.files, force)
-    for path in paths:
-        click.echo(path)
-    tell_all(opened.variant, [*kept, *(tell("left out: {problem}").format(problem=problem) for problem in written.problems),
-                              *(opened.dead_positions if opened.variant.crank is not None else ())])
+    finish(opened.variant, paths, [*kept, *(tell("left out: {problem}").format(problem=problem) for problem in written.problems),
+                                   *(opened.dead_positions if opened.variant.crank is not None else ())])
 
 
 @PROJECT
@@ -363,9 +357,7 @@ def run_page(project: str, corrected: bool, sheets: tuple[int, ...], plan: str, 
     found, problem = living_page(opened, opened.variant.chosen(sheets), plan)
     path = output if output is not None else folder_of(opened.variant, None) / "page.html"
     files.write_all({path: found.encode()})
-    click.echo(path)
-    if problem is not None:
-        raise problem
+    finish(opened.variant, [path], (), problem)
 
 
 @argument("project", required=False)
@@ -426,5 +418,4 @@ def run_optimise(project: str, corrected: bool, vary: tuple[str, ...], least: st
     click.echo(found)
     made = {path: found.opened.text.encode(), path.with_suffix(".svg"): found.svg.encode()}
     files.write_all(made)
-    for at in made:
-        click.echo(at)
+    finish(opened.project.variant, made)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -30,7 +30,6 @@ from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.compare.findings import Kind, Report
-    from tmm_sheets.drawing.plotters import Plotter
     from tmm_sheets.project import Project
 
 
@@ -148,13 +147,14 @@ def _window(context: click.Context, parameter: click.Parameter, value: str | Non
 @titled
 @on_paper
 @SHEETS
-@option("--plotter", "machine", metavar="NAME", callback=plotter,
+@option("--plotter", metavar="NAME", callback=plotter,
               help="Make plot files (HPGL) for a shipped plotter or that of a file; without it PDF.")
 @option("--printer", metavar="NAME", help="Send to this printer of CUPS.")
 @option("--tile", type=click.Choice(["a4", "a3"], case_sensitive=False), help="Cut the PDF into pages to glue together.")
 @option("--overlap", type=float, default=10.0, show_default=True, metavar="MM", help="Overlap of tiles.")
 @option("--bar", is_flag=True, help="Add a control bar of 100 mm, to be measured on paper.")
-@option("--outline", type=click.Choice(["on", "off"]), default="on", show_default=True, help="Line round the paper.")
+@option("--outline", type=click.Choice(["on", "off"]), default="on", show_default=True, callback=lambda *told: told[-1] == "on",
+        help="Line round the paper.")
 @option("--window", callback=_window, metavar="X0,Y0,X1,Y1", help="Only this part of the sheet, mm from its corner.")
 @option("--preview", is_flag=True, help="Also a picture of each plot, made from the plot file itself.")
 @option("--dpi", type=click.FloatRange(10, 1200), default=100, show_default=True, help="Dots per inch of the picture.")
@@ -163,19 +163,19 @@ def _window(context: click.Context, parameter: click.Parameter, value: str | Non
 @NO_CACHE
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the files.  [default: out/<project>]")  # fmt: skip
-def run_plot(
-    project: str, corrected: bool, sheets: tuple[int, ...], machine: Plotter | None, printer: str | None, tile: str | None,
-    overlap: float, bar: bool, outline: str, window: Box | None, preview: bool, dpi: float, ctb: bool, dry_run: bool,
-    output: Path | None,
-) -> None:
-    refuse((machine is not None and tile is not None, marked("--tile cuts a PDF; a plotter takes a sheet in parts with --window")))
+def run_plot(project: str, corrected: bool, sheets: tuple[int, ...], printer: str | None, preview: bool, dpi: float, ctb: bool,
+             dry_run: bool, output: Path | None, **asked: Any) -> None:
     import shlex
 
     from tmm_sheets.drawing import plotters
     from tmm_sheets.output import plot as plotting
 
+    look = plotting.PlotLook(**asked)
+    refuse((look.plotter is not None and look.tile is not None,
+            marked("--tile cuts a PDF; a plotter takes a sheet in parts with --window")))
     finished = project.lower().endswith(plotting.FILES)
-    if finished and any((sheets, tile, bar, window, outline == "off", click.get_current_context().meta.get(TITLE))):
+    as_it_is = plotting.PlotLook(look.plotter, overlap=look.overlap)
+    if finished and (sheets or look != as_it_is or click.get_current_context().meta.get(TITLE)):
         raise click.UsageError(tell("{project} is finished: it can be sent or shown, not changed").format(project=project))
     problem, jobs = None, dict[Path, plotting.Job]()
     with Progress() as progress:
@@ -190,7 +190,6 @@ def run_plot(
             folder = folder_of(opened.variant, output)
             if not dry_run:
                 files.check_folder(folder)
-            look = plotting.PlotLook(machine, tile, overlap, bar, outline == "on", window)
             attempt = sheet.every(opened, progress.doing, opened.variant.chosen(sheets))
             problem = attempt.problem()
             for n, composed in attempt.drawn.items():
@@ -201,7 +200,7 @@ def run_plot(
             made = {path: job.data for path, job in jobs.items()}
         for path, job in jobs.items() if preview else ():
             progress.say(tell("preview of {path} ...").format(path=path))
-            made |= {folder / name: data for name, data in plotting.preview(job, machine or plotters.plotter(), dpi).items()}
+            made |= {folder / name: data for name, data in plotting.preview(job, look.plotter or plotters.plotter(), dpi).items()}
         if ctb:
             from tmm_sheets.backends import dxf
 

@@ -14,6 +14,7 @@ from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.plotters import Plotter
+    from tmm_sheets.errors import CannotBuild
     from tmm_sheets.project import Project
     from tmm_sheets.task.title_entries import Names
     from tmm_sheets.task.variant import Variant
@@ -151,6 +152,21 @@ def tell_all(variant: Variant, said: Iterable[object]) -> None:
     """Tell what is to be said of a project on standard error, a line each."""
     for line in said:
         click.echo(f"{variant.called}: {line}", err=True)
+
+
+def finish(variant: Variant, paths: Iterable[Path], said: Iterable[object] = (), problem: CannotBuild | None = None) -> None:
+    """Tell which files were written and what is to be said of the project, then what of it could not be made.
+
+    Raises
+    ------
+    CannotBuild
+        the ``problem``, if any.
+    """
+    for path in paths:
+        click.echo(path)
+    tell_all(variant, said)
+    if problem is not None:
+        raise problem
 
 
 def folder_of(variant: Variant, output: Path | None) -> Path:

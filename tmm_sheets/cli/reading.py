@@ -14,6 +14,7 @@ from tmm_sheets.cli.options import (
     PROJECT,
     SHEETS,
     among,
+    finish,
     open_project,
     read_variant,
     refuse,
@@ -151,10 +152,8 @@ def run_record(project: str, corrected: bool, sheets: tuple[int, ...], target: s
     if target == "-":
         click.echo(text)
     else:
-
         files.write_all({Path(target): (text + "\n").encode()})
-    if problem is not None:
-        raise problem
+    finish(opened.variant, (), (), problem)
 
 
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from itertools import product
 from math import floor, isfinite, log10, radians
 from types import MappingProxyType
@@ -109,7 +110,7 @@ class _Place:
     angle: bool
     digits: int
 
-    @property
+    @cached_property
     def printed(self) -> float:
         return rounded_angle(self.value, self.digits) if self.angle else read(self.value, self.digits)[0]
 
@@ -337,6 +338,7 @@ def of_step(step: Step, k: int = 0, symbol: str = "", own: Mapping[int, Quantity
                     replace(result, symbol=symbol or result.symbol), in_letters)
 
 
+@lru_cache(256)
 def tree_of_step(step: Step) -> Expression | None:
     """The expression of a step as a formula shows it, with its bare numbers as constants; None where its rule is no formula."""
     tree = step.rule.formula(len(step.args))
@@ -347,6 +349,8 @@ def tree_of_step(step: Step) -> Expression | None:
 
 def with_bare_numbers(tree: Expression, step: Step) -> Expression:
     """An expression of the arguments of a step with those that have no letter as constants."""
+    if not any(map(_is_bare, step.args)):
+        return tree
     return filled(tree, [Constant(float(a)) if _is_bare(a) else Argument(i) for i, a in enumerate(step.args)])
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from math import isclose, pi
 from typing import Any, TypeGuard, TypeVar
 
@@ -295,6 +296,7 @@ def of_tree(tree: expression.Expression, operands: Sequence[Operand], least: int
     return held(_walk(simplified(tree), operands, False), least)
 
 
+@lru_cache(4096)
 def simplified(tree: expression.Expression) -> expression.Expression:
     """The same as a person writes it: no sums with zero, x·x as a square, a root of two squares spelt out."""
     if not isinstance(tree, expression.Operation):

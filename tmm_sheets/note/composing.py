@@ -6,6 +6,7 @@ from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from tmm_sheets import results
 from tmm_sheets import words as catalogues
 from tmm_sheets.construction.formula import Node, letters_of, reworded
 from tmm_sheets.errors import CannotBuild
@@ -39,15 +40,19 @@ def literature() -> dict[str, str]:
 
 
 def reader_of(project: Project, say: Callable[[str], None] = lambda _: None) -> Reader:
-    """What the sections of a note read: the project with its sheets drawn; those that cannot be are told among the problems."""
+    """What the sections of a note read: the project with all its results, its sheets; what cannot be made is among the problems."""
     from tmm_sheets.sheets import sheet
 
-    attempt = sheet.every(project, say, steps=True)
+    attempt = sheet.every(project, say)
     scales: dict[str, Any] = {}
     for composed in attempt.drawn.values():
         scales |= composed.scales
     reader = Reader(project, catalogues.paper(), Pictures(attempt.drawn), scales)
     reader.problems += [f"{name}: {e}" for name, e in attempt.refused.items()]
+    try:
+        results.told(project, project.parts, refused={})
+    except CannotBuild as e:
+        reader.problems.append(str(e))
     return reader
 
 

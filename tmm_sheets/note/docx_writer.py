@@ -24,6 +24,7 @@ from docx.oxml import parse_xml
 from docx.oxml.ns import qn
 from docx.shared import Mm, Pt, RGBColor
 
+from tmm_sheets import files
 from tmm_sheets.construction.formula import Node
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.note.alphabets import characters, equation
@@ -132,14 +133,9 @@ def render(note: Note, places: dict[str, Any]) -> bytes:
 
 
 def _settled(data: bytes) -> bytes:
-    """The same archive with fixed dates."""
-    out = io.BytesIO()
-    with zipfile.ZipFile(io.BytesIO(data)) as old, zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as new:
-        for name in sorted(old.namelist(), key=lambda n: (n != "[Content_Types].xml", n)):
-            info = zipfile.ZipInfo(name, FIRST.timetuple()[:6])
-            info.compress_type = zipfile.ZIP_DEFLATED
-            new.writestr(info, old.read(name))
-    return out.getvalue()
+    """The same archive with fixed dates; "[Content_Types].xml", which has to be the first, is the first of the sorted names."""
+    with zipfile.ZipFile(io.BytesIO(data)) as old:
+        return files.zipped({name: old.read(name) for name in sorted(old.namelist())})
 
 
 class _Writer:

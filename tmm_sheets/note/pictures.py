@@ -187,7 +187,7 @@ class Pictures:
             box = extent(marks)
         chosen = [m for m in marks if m.by is not None and _within(m.by.step, m.by.role, FOCUS.get(name, ()))]
         if chosen and not readable(box, SMALLEST):
-            box = _cut(_about(extent(chosen), box))
+            box = _cut(extent(chosen).inset(-AROUND).within(box))
             return [_figure(name, windowed(marks, box, "thin"), box.inset(-MARGIN))]
         return [_figure(name, marks, box)]
 
@@ -252,12 +252,6 @@ def _figure(name: str, marks: Sequence[Mark], box: Box) -> Figure:
 
 AROUND = 8.0
 """What is left round that which is to be seen of a larger picture, mm on the sheet."""
-
-
-def _about(box: Box, whole: Box) -> Box:
-    """A rectangle with some room around it, within the whole picture."""
-    low = max(box.x0 - AROUND, whole.x0), max(box.y0 - AROUND, whole.y0)
-    return Box(*low, min(box.x1 + AROUND, whole.x1), min(box.y1 + AROUND, whole.y1))
 
 
 def _cut(box: Box) -> Box:

@@ -34,7 +34,8 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.meanings import words
 from tmm_sheets.note.document import Inline, NumberInText, Rows, ShownFormula, Symbol, Text
 from tmm_sheets.numbers import degrees_and_minutes, fixed, is_zero, number
-from tmm_sheets.record.recording import book_of, unit
+from tmm_sheets.record.recording import unit
+from tmm_sheets.record.step_index import StepIndex
 from tmm_sheets.task import units
 from tmm_sheets.words import is_latin
 
@@ -42,7 +43,6 @@ if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
     from tmm_sheets.note.pictures import Pictures
     from tmm_sheets.project import Project
-    from tmm_sheets.record.step_index import StepIndex
 
 FINEST = 6
 """Digits that the greatest of a kind would have with the decimals of the least of them."""
@@ -93,12 +93,8 @@ class Reader:
 
     @cached_property
     def book(self) -> StepIndex:
-        """Steps and plans as recorded when they were first asked for."""
-        return book_of(self.project)
-
-    def forget(self) -> None:
-        """Read the record anew: more has been computed since."""
-        self.__dict__.pop("book", None)
+        """All steps of the plans that results come from, whether or not a sheet shows them."""
+        return StepIndex(plan for of_part in self.project.plans.values() for plan in (of_part or {}).values())
 
     @property
     def words(self) -> dict[str, Any]:
@@ -141,7 +137,7 @@ class Reader:
 
     # --- the position that is told in words
 
-    @property
+    @cached_property
     def k(self) -> int:
         """Number of the position that is told in words: that of the force analysis."""
         variant = self.project.variant
@@ -151,7 +147,7 @@ class Reader:
             return self.project.force_index
         return min(2, len(self.project.cycle.labels) - 1)
 
-    @property
+    @cached_property
     def label(self) -> str:
         """Label of that position; empty where nothing moves in numbered positions."""
         variant = self.project.variant
@@ -244,11 +240,12 @@ class Reader:
         """An operand that a step gives at the position that is told."""
         return NoteQuantity(symbol, value, unit, step=self.id(step), position=self.label)
 
-    def givens(self, unit: str = "") -> list[NoteQuantity]:
-        """Given numbers that some step takes, each once, those of a unit or all."""
+    @cached_property
+    def givens(self) -> list[NoteQuantity]:
+        """Given numbers with letters that some step takes, each letter once."""
         found: dict[str, NoteQuantity] = {}
         for a in (a for step in self.book.steps.values() for a in step.args):
-            if isinstance(a, GivenNumber) and a.symbol and (not unit or a.unit == unit):
+            if isinstance(a, GivenNumber) and a.symbol:
                 found.setdefault(a.symbol, NoteQuantity(a.symbol, float(a), a.unit, step=a.name))
         return list(found.values())
 
@@ -261,11 +258,11 @@ class Reader:
 
     def lengths(self) -> list[NoteQuantity]:
         """Lengths of the links among them."""
-        return [q for q in self.givens("m") if q.symbol.startswith("l") and q.value]
+        return [q for q in self.givens if q.unit == "m" and q.symbol.startswith("l") and q.value]
 
     def length(self, a: str, b: str) -> str:
         """Letters of the length between two points, as it is given or as they follow each other."""
-        known = {q.symbol for q in self.givens("m")}
+        known = {q.symbol for q in self.givens if q.unit == "m"}
         return next((s for s in (f"l_{{{a}{b}}}", f"l_{{{b}{a}}}") if s in known), f"l_{{{a}{b}}}")
 
     # --- formulas
@@ -307,7 +304,7 @@ class Reader:
         """A formula from its expression and the quantities in the places of its arguments."""
         in_letters = [Operand(letters(q.symbol), None, bool(_SUM.search(q.symbol))) for q in quantities]
         used = [quantities[i] for i in dict.fromkeys(arguments(simplified(tree)))]
-        told = [q for q in used if not _plain(q.symbol) and not _TERM.search(q.symbol)]
+        told = [q for q in used if not _PLAIN.fullmatch(q.symbol) and not _TERM.search(q.symbol)]
         # A letter whose magnitude stands between bars; a segment between two points is what it is.
         explained = [(q.symbol if "–" in q.symbol else q.symbol.strip("|"), self.unit(q.unit))
                      for q in (replace(result, symbol=symbol), *told)]
@@ -370,7 +367,7 @@ class Reader:
         names = {s.name for step in plan for s in (step, *step.args) if isinstance(s, Step | Given)}
         told: list[tuple[Step, str]] = []
         for step, sentence in zip(plan, protocol.sentences(plan, k, to_mm, name), strict=True):
-            if skip(step) or _bare(sentence):
+            if skip(step) or _BARE.fullmatch(sentence):
                 continue
             together = self._together(told[-1][1], sentence) if told else ""
             if together:
@@ -459,12 +456,10 @@ _SUM = re.compile(r"(?<!^)[+−](?![^{]*\})")
 _TERM = re.compile(r"·|(?<!^)[+−](?![^{]*\})")
 
 
+_PLAIN = re.compile(r"[\d,.−-]+(·10\^\{.*\})?")
+"""A number where a letter may stand."""
 _OF_PROGRAM = re.compile(r"[a-z]{4}|[a-z]\.[a-z]|[a-z]_[a-z]{3}|sign of")
 """In what is no letter but a name of the program."""
-
-
-def _plain(symbol: str) -> bool:
-    return bool(re.fullmatch(r"[\d,.−-]+(·10\^\{.*\})?", symbol))
 
 
 def symbol_of(step: Step) -> str:
@@ -514,7 +509,7 @@ def marked(sentence: str, step: str, position: str, language: str, names: Collec
         before = sentence[m.start() - 1 : m.start()]
         if m["name"] or before.isalpha():
             continue
-        if m["word"] and sentence[m.end() : m.end() + 1].isalpha() and _cyrillic(sentence[m.end()]):
+        if m["word"] and "\u0400" <= sentence[m.end() : m.end() + 1] <= "\u04ff" and sentence[m.end()].isalpha():
             continue
         if m["word"] and is_latin(language) and not _lettered(m["word"], sentence[: m.start()], names):
             continue
@@ -537,10 +532,6 @@ def _lettered(word: str, before: str, names: Collection[str]) -> bool:
     return word in names or bool(re.search(r"[\d_′″*'̅α-ωΑ-Ωϕϑ∞]|^([A-Z]\d?)+$", word)) or before.endswith("|")
 
 
-def _cyrillic(c: str) -> bool:
-    return "\u0400" <= c <= "\u04ff"
-
-
 def named(word: str) -> str:
     """Markup of letters as sentences write them: pb3 is p and b with the index 3, F21τ a force with its mark."""
     base, power, exponent = word.partition("^")
@@ -554,6 +545,5 @@ def named(word: str) -> str:
     return re.sub(rf"([{_LETTER}])(\d+)", r"\1_{\2}", word)
 
 
-def _bare(sentence: str) -> bool:
-    """A sentence that only hands a number on: ω0 = 0."""
-    return re.fullmatch(r"\S+ = [^ ]+( [^ ]+)?\.", sentence) is not None
+_BARE = re.compile(r"\S+ = [^ ]+( [^ ]+)?\.")
+"""A sentence that only hands a number on: ω0 = 0."""

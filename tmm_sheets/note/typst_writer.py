@@ -10,9 +10,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from tmm_sheets import quoting
 from tmm_sheets.construction.formula import spelt
-from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.note.alphabets import TYPST, characters, string
 from tmm_sheets.note.arranging import Measured, arranged, sticky
 from tmm_sheets.note.document import (
@@ -44,8 +43,6 @@ def render(note: Note) -> tuple[bytes, dict[str, int]]:
 
     Raises
     ------
-    CannotBuild
-        when the package typst is missing.
     BadInput
         when the preamble, which a department may change, cannot be set or names a font that is not there.
     """
@@ -68,7 +65,7 @@ def placed(note: Note) -> Note:
 
     Raises
     ------
-    CannotBuild, BadInput
+    BadInput
         as :func:`render`.
     """
     import json
@@ -101,10 +98,7 @@ def _fonts() -> list[str]:
 @contextmanager
 def _compiler(source: str, files: Mapping[str, bytes]) -> Iterator[Any]:
     """Typst with a source and the files it names."""
-    try:
-        import typst
-    except ImportError:
-        raise CannotBuild(tell("the note as PDF needs the package typst"), quoting.install("note")) from None
+    import typst  # note.check() has told it where it is missing
 
     with TemporaryDirectory(prefix="tmm-note-") as folder:
         root = Path(folder)
@@ -160,11 +154,8 @@ def _measuring(note: Note, blocks: Sequence[Block], running: int) -> str:
 
 
 def _titles(note: Note) -> str:
-    return "(" + ", ".join(f"{string(k)}: {_value(v)}" for k, v in note.title_page.items()) + ")"
-
-
-def _value(value: Any) -> str:
-    return f"({', '.join(string(x) for x in value)},)" if isinstance(value, list | tuple) else string(str(value))
+    values = ((k, f"({', '.join(map(string, v))},)" if isinstance(v, list) else string(v)) for k, v in note.title_page.items())
+    return "(" + ", ".join(f"{string(k)}: {value}" for k, value in values) + ")"
 
 
 def _written(blocks: Sequence[Block]) -> str:

@@ -14,7 +14,6 @@ import zipfile
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from io import BytesIO
 from itertools import count
 from pathlib import Path
 from types import MappingProxyType
@@ -29,8 +28,6 @@ from tmm_sheets.words import tell
 
 RECORD = ".tmm-sheets.json"
 SCHEMA = 1
-DAWN = (1980, 1, 1, 0, 0, 0)
-"""The date of every member of an archive: the earliest a zip file knows, so that the same sheets are the same bytes."""
 
 
 @dataclass
@@ -128,15 +125,7 @@ class Archive:
         if self.place.exists():
             with zipfile.ZipFile(self.place) as old:
                 members = {name: old.read(name) for name in old.namelist()} | members
-        buffer = BytesIO()
-        with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-            for name in sorted(members):
-                member = zipfile.ZipInfo(name, DAWN)
-                member.compress_type = zipfile.ZIP_DEFLATED
-                member.external_attr = 0o644 << 16
-                member.create_system = 3  # the same bytes on every system
-                archive.writestr(member, members[name])
-        files.write_all({self.place: buffer.getvalue()})
+        files.write_all({self.place: files.zipped({name: members[name] for name in sorted(members)})})
 
 
 TRIED = ".tmm-sheets.tried"

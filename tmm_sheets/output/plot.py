@@ -135,7 +135,7 @@ def _printed(drawing: Drawing, name: str, look: PlotLook) -> Job:
         except ValueError as e:
             raise BadInput(str(e), hint=tell("choose another --overlap")) from None
         corner = complex(part.x0, part.y0)
-        pages = [pdf.PdfPage(_moved(t.part, corner, part), t.shift - corner, t.page) for t in made]
+        pages = [pdf.PdfPage(t.part.moved(corner).within(part), t.shift - corner, t.page) for t in made]
         last = made[-1]
         note = tell_n("{n} page {paper}: rows: {rows}, in each: {columns}, overlap {overlap:g} mm",
                       "{n} pages {paper}: {rows} rows of {columns}, overlap {overlap:g} mm", len(made))
@@ -154,12 +154,6 @@ def _printed(drawing: Drawing, name: str, look: PlotLook) -> Job:
 
 UNSCALED = ("-o", "print-scaling=none")
 PRINT = marked("print at 100 % (actual size), in black; 5 mm at the edge are beyond the reach of many printers")
-
-
-def _moved(box: Box, by: complex, within: Box) -> Box:
-    """The part of a tile on the sheet, no more of it than the window shows."""
-    return Box(max(box.x0 + by.real, within.x0), max(box.y0 + by.imag, within.y0),
-               min(box.x1 + by.real, within.x1), min(box.y1 + by.imag, within.y1))  # fmt: skip
 
 
 def _corners(box: Box) -> str:

@@ -100,12 +100,9 @@ def scheme(project: Project) -> ViewPicture:
     CannotBuild
         when the project has no mechanism to draw.
     """
-    from tmm_sheets.sheets import sheet
-
-    for n in range(1, len(project.sheets) + 1) if project.variant.crank is not None else ():
-        for view in views(sheet.composed(project, n)):
-            if view.draw == SCHEME:
-                return view
+    found = next((view for view in every(project) if view.draw == SCHEME), None) if project.variant.crank is not None else None
+    if found is not None:
+        return found
     raise CannotBuild(tell("no sheet of {project} shows a mechanism").format(project=project.variant.called))
 
 
@@ -130,23 +127,27 @@ def named(project: Project, name: str, position: str = "") -> ViewPicture:
     BadInput
         when no sheet has such a view.
     """
-    from tmm_sheets.sheets import sheet
-
     of_plan, titles, labels = set[str](), list[str](), list[str]()
-    for n in range(1, len(project.variant.drawable()) + 1):
-        for view in views(sheet.composed(project, n)):
-            shown = [label for plan, label in view.plans if plan == name]
-            called = shown or name.casefold() in view.drawing.title.casefold()
-            if called and (not position or position in shown):
-                return view
-            labels += shown
-            of_plan |= {plan for plan, _ in view.plans}
-            titles.append(view.drawing.title)
+    for view in every(project):
+        shown = [label for plan, label in view.plans if plan == name]
+        called = shown or name.casefold() in view.drawing.title.casefold()
+        if called and (not position or position in shown):
+            return view
+        labels += shown
+        of_plan |= {plan for plan, _ in view.plans}
+        titles.append(view.drawing.title)
     if labels:
         raise BadInput(tell('no view shows "{name}" in position {position}').format(name=name, position=position),
                        tell("there are {names}").format(names=", ".join(dict.fromkeys(labels))))
     near = spelling.near(name, (*sorted(of_plan), *titles), 6) or sorted(of_plan)
     raise BadInput(tell('no view shows "{name}"').format(name=name), tell("there are {names}").format(names=", ".join(near)))
+
+
+def every(project: Project) -> Iterator[ViewPicture]:
+    """The views of all sheets, each drawn when it is asked for."""
+    from tmm_sheets.sheets import sheet
+
+    return (view for n in range(1, len(project.variant.drawable()) + 1) for view in views(sheet.composed(project, n)))
 
 
 def views(composed: Composed) -> Iterator[ViewPicture]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import zipfile
 from base64 import b64encode
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import redirect_stderr, redirect_stdout
@@ -214,13 +213,8 @@ def _commanded(command: Sequence[str], say: Say) -> tuple[int, list[str]]:
 
 def _zipped(paths: Sequence[Path]) -> bytes:
     """A zip file: the same bytes of the same files."""
-    data = io.BytesIO()
-    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
-        for path in paths:
-            name = path.relative_to(MADE) if path.is_relative_to(MADE) else path
-            archive.writestr(zipfile.ZipInfo(name.as_posix()), path.read_bytes(), zipfile.ZIP_DEFLATED)
-    return data.getvalue()
-
+    return files.zipped({(path.relative_to(MADE) if path.is_relative_to(MADE) else path).as_posix(): path.read_bytes()
+                         for path in paths})
 
 
 # --- a drawing that was dropped on the page, compared: theirs and ours as pictures in millimetres of the sheet ---------------

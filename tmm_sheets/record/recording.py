@@ -6,6 +6,7 @@ import json
 import re
 from bisect import bisect_right
 from collections.abc import Container, Iterable, Mapping, Sequence
+from functools import lru_cache
 from math import isfinite
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
@@ -141,20 +142,21 @@ def formula_of(step: Step) -> expression.Expression | None:
     return with_bare_numbers(tree, step)
 
 
-def _formula_in_numbers(step: Step, tree: expression.Expression, k: int, patterns: dict[str, str]) -> str:
-    """The formula with the numbers of position ``k``, LaTeX; empty if one of them is undefined.
-
-    ``patterns`` keep it with marks in the places of its numbers: it is written alike for all numbers of the same signs.
-    """
+def _formula_in_numbers(step: Step, tree: expression.Expression, k: int) -> str:
+    """The formula with the numbers of position ``k``, LaTeX; empty if one of them is undefined."""
     values = [value_at(a, k) for a in (*step.args, step)]
     if any(np.ndim(v) or isinstance(v, str) or not isinstance(v, int | float | complex | np.number) for v in values):
         return ""
     *texts, value = map(_number_latex, values)
     signs = "".join("-" if text[0] == "-" else "0" if text[0] in "0123456789\\" else "a" for text in texts)
-    if signs not in patterns:
-        patterns[signs] = _spelt(tree, [_operand(text, chr(_MARK + i)) for i, text in enumerate(texts)])
-    shown = patterns[signs].translate(dict(enumerate((text.removeprefix("-") for text in texts), _MARK)))
+    shown = _pattern(tree, signs).translate(dict(enumerate((text.removeprefix("-") for text in texts), _MARK)))
     return f"{shown} = {value}"
+
+
+@lru_cache(1024)
+def _pattern(tree: expression.Expression, signs: str) -> str:
+    """A formula with marks in the places of its numbers: it is written alike for all numbers of the same ``signs``."""
+    return _spelt(tree, [_operand("-0" if sign == "-" else sign, chr(_MARK + i)) for i, sign in enumerate(signs)])
 
 
 _MARK = 0xE000
@@ -370,11 +372,10 @@ class _StepTexts:
             labels = ("",)
         tree = formula_of(step)
         sentence, shown, lines = {}, {}, {}
-        patterns: dict[str, str] = {}
         with np.errstate(invalid="ignore", divide="ignore"):
             for k, label in enumerate(labels):
                 sentence[label] = protocol.sentence(step, k, self.to_mm, self.unit, self.sizes)
-                if tree is not None and (text := _formula_in_numbers(step, tree, k, patterns)):
+                if tree is not None and (text := _formula_in_numbers(step, tree, k)):
                     shown[label] = text
                 if found := _helpers(step, k):
                     lines[label] = found

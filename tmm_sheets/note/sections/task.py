@@ -9,11 +9,9 @@ from dataclasses import dataclass
 from math import degrees, isclose, pi
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets import results
 from tmm_sheets.construction import expression
 from tmm_sheets.construction.equation import read
 from tmm_sheets.construction.formula import letters_of
-from tmm_sheets.errors import CannotBuild
 from tmm_sheets.meanings import meaning_of, tables_of
 from tmm_sheets.note.document import NumberInText, Rows, ShownFormula, Text, enumerated, lettered
 from tmm_sheets.note.phrases import set_text
@@ -36,11 +34,6 @@ Item = Mapping[str, Any]
 
 def task_fields(r: Reader) -> dict[str, Any]:
     """Given numbers with their letters, the diagrams of the loads, and the scheme."""
-    try:
-        results.told(r.project, None, refused={})
-    except CannotBuild as e:
-        r.problems.append(str(e))
-    r.forget()
     return {
         "scheme": r.pictures.position("position plan", r.label, own=True) if r.label else [],
         "list": [{"sheet": str(n), "title": c.drawing.title.split(". ", 1)[-1]} for n, c in r.pictures.sheets.items()],
@@ -54,7 +47,7 @@ def task_fields(r: Reader) -> dict[str, Any]:
 
 def _data(r: Reader) -> Iterator[Row | None]:
     """Rows of what ``[data]`` has words for, as the project file writes it, or as it goes without saying."""
-    own = {q.step: q.symbol for q in r.givens()}
+    own = {q.step: q.symbol for q in r.givens}
     uses = synthesis_refs.uses(tomllib.loads(r.project.variant.text))
     found = {"".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in path).lstrip("."): match for path, match in uses}
     taken = {getattr(a, "name", "") for step in r.book.steps.values() for a in step.args}
