@@ -24,8 +24,9 @@ test: lint  ## everything the tests prove: ruff, mypy beside pytest
 trials: $(VENV)/.tested  ## the long tests: every project, every language, random students, photographs, kills, clusters
 	$(PYTEST) -m 'trial or hypothesis' --hypothesis-profile many
 
-attack: $(VENV)/.tested  ## odd files, words and arguments at every door, counts by kind; CASES=300 SEED=0
-	nice $(BIN)/python -m tests.attack --cases $(or $(CASES),300) --seed $(or $(SEED),0)
+attack: $(VENV)/.tested  ## odd files, words and arguments at every door, counts by kind in out/; CASES=300 SEED=0, in pieces of SECONDS
+	nice -n 19 $(BIN)/python -m tests.attack --cases $(or $(CASES),300) --seed $(or $(SEED),0) $(if $(SECONDS),--seconds $(SECONDS)) \
+	    --tally out/attacked-$(or $(SEED),0).toml
 
 lint: $(VENV)/.tested  ## style of the code (ruff)
 	$(BIN)/ruff check .
@@ -106,7 +107,9 @@ help:  ## this list
 	@grep -hE '^[a-z-]+:.*  ## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 14
 
 # The environment: made once, brought up to date when pyproject.toml changes. With LOCKED=1, as in CI, first of all the very files of
-# tests/lock.txt; the ranges of pyproject.toml are satisfied then.
+# tests/lock.txt; the ranges of pyproject.toml are satisfied then, and what builds the package is among them: nothing else is fetched.
+
+EDITABLE = install --quiet --disable-pip-version-check $(if $(LOCKED),--no-build-isolation --no-index) --editable
 
 $(VENV)/.made:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -115,11 +118,11 @@ $(VENV)/.made:
 	@touch $@
 
 $(VENV)/.installed: $(VENV)/.made $(if $(LOCKED),$(VENV)/.locked) pyproject.toml $(wildcard templates/locale/*/*/*.po)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	$(BIN)/python -m pip $(EDITABLE) .
 	@touch $@
 
 $(VENV)/.tested: $(VENV)/.installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	$(BIN)/python -m pip $(EDITABLE) '.[test]'
 	@touch $@
 
 $(VENV)/.locked: $(VENV)/.made tests/lock.txt

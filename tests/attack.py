@@ -1,41 +1,49 @@
-"""Project files with one thing wrong in them: every command must do its work or say what is wrong, never fall over.
+"""What strangers bring, to every door through which it comes in: the program does its work or says what is wrong, never falls over.
 
-    python -m tests.attack [--cases N] [--seed S] [--small] [--door KIND] [FILE...]
+    python -m tests.attack [--cases N] [--seed S] [--first N] [--door KIND] [--jobs N] [--seconds S] [--tally FILE]
 
-takes shipped projects and those of the tests (or the files named), puts odd values in the places of theirs and runs the commands;
-before, it tries as many cases at every other door through which something of a stranger's comes in.
+tries cases 0 to N - 1 of a seed at each door, fewer where each takes long, and counts what came of them. With a tally the counts
+are kept there, and a run that ends early, as after so many seconds, is gone on with by the same words.
 """
 
 from __future__ import annotations
 
 import argparse
-import copy
 import io
+import json
+import os
 import random
 import re
+import resource
+import signal
 import tempfile
 import time
 import tomllib
 import traceback
 import warnings
+import zipfile
 import zlib
 from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from dataclasses import replace
+from datetime import time as time_of_day
 from functools import cache, partial
+from multiprocessing import get_context
 from pathlib import Path
+from unittest import mock
 
+import numpy as np
+import openpyxl
 from PIL import Image
 from starlette.exceptions import HTTPException
 
-from tests.faults import FAULTS
-from tests.project_files import text, toml
+from tests.faults import FAULTS, PROCESSES
+from tests.odd_projects import NAMES, REFUSED, SMALL, SOURCES, case, unfinished
 from tests.test_doors import FAMILY, SCHEME, TABLE, WHOLES
-from tests.test_missing_parts import FILES
-from tests.test_odd_input import places
-from tmm_sheets import catalogue, protocols, resources, results, summary
+from tmm_sheets import api, catalogue, files
 from tmm_sheets.__main__ import run
-from tmm_sheets.backends import dxf, pdf, png, svg
+from tmm_sheets.backends import dxf, pdf, png
 from tmm_sheets.compare import group, placing
 from tmm_sheets.compare.cad import cad_file
 from tmm_sheets.compare.measured import measured_file
@@ -43,177 +51,12 @@ from tmm_sheets.compare.measured.collecting import measurables
 from tmm_sheets.compare.photo import photograph
 from tmm_sheets.drawing import plotters
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.output import roster
+from tmm_sheets.output import build_store, roster
 from tmm_sheets.page import doors as page_doors
 from tmm_sheets.page import jobs as page_jobs
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
 from tmm_sheets.task import messages, variant
-from tmm_sheets.task.title_entries import Names
-
-TESTS = Path(__file__).parent
-WHOLE = (*(resources.variants() / "lugansk").glob("*.toml"), resources.variants() / "press.toml",
-         *(TESTS / "projects").glob("*.toml"), TESTS / "methods/linkage/radial.toml")
-SOURCES = {path.stem: path.read_text(encoding="utf-8") for path in sorted(WHOLE)}
-SMALL = {name: text(*parts) for name, (parts, _, _) in FILES.items()}
-GONE = object()
-NAMES = ["A_", "_A", "A B", "Ж", "B3", "1", "p", "π", "n", "K", "P", "S", "b", "B′", "O₁", "A^2", "{x}", "A{", "A\\", "–", "A–B",
-         "A,B", "x" * 100, "0", "🙂", "é", "F21", "G2", "Mур", "2", "10", "11", "a.b", "A/B", "-", " ", "A\n"]
-UNITS = ["0 m", "-1 m", "1 kg", "1e-12 m", "1e-6 m", "1e6 m", "1e12 m", "1e300 m", "1e-300 m", "nan m", "inf m", "m", "1", "0 deg",
-         "90 deg", "180 deg", "360 deg", "1e9 deg", "-90 deg", "0 rpm", "1e9 rpm", "1e-9 rpm", "0 N", "1e12 N", "-5 N", "1e-12 N",
-         "1e9 kg", "1e-9 kg", "0 kg", "1e9 kg m2", "0 mm", "1e5 mm", "1e-5 mm", "1,5 m"]
-NUMBERS = [0, 1, 2, 3, 4, 5, 7, 13, 17, 100, 1000, -1, 0.5, 0.999999, 1e-9, 1.000001, 1e9, 1e300, float("nan"), float("inf"), -0.0]
-FACTORS = [0, -1, 1e-300, 1e-12, 1e-6, 1e-3, 0.1, 0.5, 0.9, 0.99, 1.01, 1.1, 2, 3, 10, 1e3, 1e6, 1e12, 1e300]
-MILD, NEAR = 0.7, [0.9, 0.97, 0.999, 1.001, 1.03, 1.1]
-"""Share of the files in which numbers are changed a little only, so that about half of all can be drawn, and by what."""
-ODD = [True, [], {}, [[]], "", "synthesis l_AB", "dead", "both", "idle", "working", "clockwise", "along motion"]
-
-
-def scaled(value, factor):
-    """A quantity times a factor, unit kept; None where it is none."""
-    if isinstance(value, str):
-        number, _, unit = value.partition(" ")
-        try:
-            return f"{float(number.replace(',', '.')) * factor!r} {unit}"
-        except ValueError:
-            return None
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        return round(value * factor) if isinstance(value, int) else value * factor
-    return None
-
-
-def offers(data, path, value, rng):
-    """One thing that may stand in place of a value."""
-    kind = rng.choice(["gone", "odd", "names", "units", "numbers", "scaled", "scaled", "scaled", "scaled", "like", "list", "twice"])
-    if kind == "gone":
-        return GONE
-    if kind == "scaled":
-        found = scaled(value, rng.choice(FACTORS))
-        if found is not None:
-            return found
-        kind = "like"
-    if kind == "like":  # what stands elsewhere under the same key, or anything of the same type
-        same = [v for p, v in all_places(data) if p[-1] == path[-1] and v != value]
-        alike = [v for _, v in all_places(data) if type(v) is type(value) and v != value]
-        return rng.choice(same or alike or [value])
-    if kind == "list" and isinstance(value, list):
-        return rng.choice([value[:1], value * 2, value[::-1], value[:-1], [], value * 50])
-    if kind == "twice" and isinstance(value, list) and value:
-        return [*value, copy.deepcopy(value[rng.randrange(len(value))])]
-    return rng.choice({"odd": ODD, "names": NAMES, "units": UNITS, "numbers": NUMBERS}.get(kind, ODD))
-
-
-def all_places(data):
-    return [(path, at(data, path)) for path in places(data)]
-
-
-def at(data, path):
-    for key in path:
-        data = data[key]
-    return data
-
-
-def changed(data, path, value):
-    """The file's data with another value at one place; a name of a point or a link is changed wherever it stands."""
-    data = copy.deepcopy(data)
-    before = at(data, path[:-1])
-    if value is GONE:
-        del before[path[-1]]
-    else:
-        before[path[-1]] = value
-    return data
-
-
-def renamed(data, old, new):
-    """Every text ``old`` becomes ``new``, keys of [points] included."""
-    if isinstance(data, dict):
-        return {new if k == old else k: renamed(v, old, new) for k, v in data.items()}
-    if isinstance(data, list):
-        return [renamed(v, old, new) for v in data]
-    return new if data == old else data
-
-
-def case(sources, rng):
-    """A changed file and what was changed."""
-    file = rng.choice(sorted(sources))
-    data = tomllib.loads(sources[file])
-    data.pop("title_block", None)  # texts only
-    notes = []
-    mild = rng.random() < MILD
-    for _ in range(rng.choice([1, 1, 1, 2, 3])):
-        if mild:
-            path, value = rng.choice([(p, v) for p, v in all_places(data) if scaled(v, 1.0) is not None and p[0] != "schema"
-                                      and not (isinstance(v, str) and " " not in v)])
-            new = scaled(value, rng.choice(NEAR))
-            notes.append(f"{'.'.join(map(str, path))}: {value} -> {new}")
-            data = changed(data, path, new)
-            continue
-        if rng.random() < 0.15:
-            keys = ("name", "inner", "pin", "pivot", "link", 0, 1)
-            words = sorted({v for p, v in all_places(data) if isinstance(v, str) and p[-1] in keys})
-            if words:
-                old, new = rng.choice(words), rng.choice(NAMES)
-                notes.append(f"{old} -> {new}")
-                data = renamed(data, old, new)
-                continue
-        if rng.random() < 0.1:
-            key = rng.choice(sorted(data))
-            notes.append(f"no {key}")
-            data = {k: v for k, v in data.items() if k != key}
-            continue
-        path, value = rng.choice(all_places(data))
-        new = offers(data, path, value, rng)
-        notes.append(f"{'.'.join(map(str, path))}: {str(value)[:60]} -> {'gone' if new is GONE else str(new)[:60]}")
-        data = changed(data, path, new)
-    return f"{file}: {'; '.join(notes)}", toml(data)
-
-
-def _steps(file):
-    """What the commands do with a file, one after another on one project: name and a function without arguments."""
-    read = variant.parse(file, "my.toml")
-    project = Project(read)
-    yield "show", lambda: summary.text(read, Names())
-    yield "check", project.check
-    yield "solve", lambda: results.as_json(results.assemble(project, None, refused={}))
-    if len(read.sheets) < 10:
-        yield "build", lambda: [svg.render(found.drawing) for found in sheet.every(project).drawn.values()]
-        yield "protocol", lambda: "\n".join(protocols.lines(project, None))
-        if len(file) < 2500:
-            yield "template", lambda: measurables(project, lambda _: None)
-
-
-def fallen(file):
-    """(step, message) of every step that ends with anything but its result or a message to the user."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        try:
-            for name, step in _steps(file):
-                try:
-                    step()
-                except CannotBuild as e:
-                    if not str(e).strip():
-                        yield name, "refused without a word"
-                except BadInput as e:
-                    yield from ((name, f"no place: {p}") for p in e.problems if not p.file)
-                except Exception as e:
-                    place = traceback.extract_tb(e.__traceback__)[-1]
-                    yield name, f"{type(e).__name__}: {e} ({Path(place.filename).name}:{place.lineno})"
-        except BadInput as e:
-            yield from (("read", f"no line: {p}") for p in e.problems if not (p.message and p.line))
-        except Exception as e:
-            yield "read", f"{type(e).__name__}: {e}"
-
-
-def drawn(file):
-    """Whether all sheets of a file can be drawn."""
-    try:
-        return sheet.every(Project(variant.parse(file, "my.toml"))).problem() is None
-    except (BadInput, CannotBuild):
-        return False
-
-
-# --- other doors -------------------------------------------------------------------------------------------------------
-
 
 CAM = "lugansk/cam_flat"
 LETTERS = ["\0", "\x1b[2J", "\u202e", "\u200b", "é", "🙂", "\ufeff", *"'\";,$@/\\[{=#% "]
@@ -226,6 +69,17 @@ COMMANDS = [["check", CAM], ["show", CAM], ["solve", CAM], ["solve", CAM, "--csv
             ["protocol", CAM], ["list"], ["list", "cam", "--json"], ["new", "mine", "--groups", "1,2"], ["record", CAM],
             ["new", "mine", "--parts", "gear"], ["plot", CAM, "--dry-run"], ["compare", CAM, "--template"],
             ["family", "check", "f"], ["roster", "r.csv", "--task", "x"]]
+MAKING = [["page", CAM, "-o", "p.html"], ["defence", CAM, "-o", "o"], ["build", CAM, "--format", "svg", "-o", "o"],
+          ["plot", CAM, "-o", "o", "--plotter", "a1"], ["record", CAM, "--json", "r.json"], ["protocol", CAM, "--plan", "cam"],
+          ["optimise", CAM, "--vary", "cam.stroke=20..30 mm", "--least", "max |cam.pressure_angle|", "--tries", "2", "-o", "x"],
+          ["build", CAM, "--format", "png", "--dpi", "30", "-o", "o"], ["solve", CAM, "--positions", "5", "--csv", "x.csv"],
+          ["solve", CAM, "--phi", "1,2", "--npz", "x.npz"], ["build", CAM, "--format", "hpgl", "--zip", "-o", "o"]]
+WORDS = [*ARGUMENTS, "--sheet=1", "--plan=cam", "--dpi=1e9", "--tries=-1", "--vary=cam.e=nan..inf mm", "--vary=a=1..2",
+         "--paper=A9x9", "--paper=A2", "--portrait", "--one-file", "--views", "--lang=en", "--tile=a4", "--overlap=1e300",
+         "--window=0,0,nan,1", "--window=0,0,1,1", "--least=cam.stroke/0", "--most=1", "--subject-to=cam.r0>=-inf",
+         "--text=strokes", "--student=🙂", f"--group={'Щ' * 500}", "--institution=\u202e", "--positions=1e9", "--phi=1e300",
+         "--part=cam,cam", "--no-cache", "--json=-", "-ox:y", "-o" + "d/" * 3000, "-o/dev/full", "-o/proc/1/x", "--output=",
+         "--npz=/dev/null", "--preview", "--ctb"]
 
 
 def edited(text, rng):
@@ -246,6 +100,8 @@ def cut(data, rng):
     """Bytes with some of them changed, left out or doubled."""
     found = bytearray(data)
     for _ in range(rng.choice([1, 3, 30])):
+        if not found:
+            break
         at = rng.randrange(len(found))
         found[at:at + rng.choice([0, 1, 1, 1, 400])] = rng.randbytes(rng.choice([0, 1, 1, 1, 400]))
     return bytes(found)
@@ -287,7 +143,8 @@ def whole(kind):
     table = measured_file.template(CAM, measured()).decode("utf-8-sig").splitlines()
     return {
         "roster": "student;group;task;cipher\nА. Б.;Т-1;;transport/press@05-ЭПС-123\nВ;Т-1;sixbar/3:2;\n",
-        "settings": '[title_block]\nstudent = "А"\n[paper]\nformat = "A2"\n', "family": FAMILY, "table": TABLE, "scheme": SCHEME,
+        "settings": '[title_block]\nstudent = "А"\n[paper]\nformat = "A2"\n', "family": FAMILY, "rules": RULES, "table": TABLE,
+        "scheme": SCHEME,
         "views": '[[view]]\nname = "Кулачок"\nours = [[0, 0], [100, 0]]\ntheirs = [[10, 10], [110, 10]]\n',
         "measured": "\n".join(f"{line}{k}" if k > 5 else line for k, line in enumerate(table)), "kept": sheet.stored(composed),
         "dxf": dxf.render(some).decode(), "pdf": pdf.render(some), **WHOLES,
@@ -309,20 +166,96 @@ def put(kind, name, rng, change=edited):
     return Path(name)
 
 
-def family(rng):
+RULES = FAMILY.replace("[machine.pump]", '''source = "manual, $file: $key, $digit = $column"
+[machine.pump]
+title = "Pump"
+given = ["l", "s"]''') + """
+parts = { a = "1" }
+[machine.pump.derived]
+s = { is = "2 * l + sqrt(l)", unit = "mm", digits = 4 }
+t = { is = "s ^ 2 - l / 3", digits = 0, source = "of $s_source and $l" }
+[[machine.pump.misprint]]
+key = "l"
+column = "1"
+suggested = 21
+reason = "rows grow"
+[[machine.pump.remark]]
+when = "s + l < t"
+say = "short"
+"""
+
+
+def family(rules, rng):
     """A family one of whose files is changed."""
-    for kind, name in (("family", "f/family.toml"), ("scheme", "f/pump.toml"), ("table", "f/pump.csv")):
+    for kind, name in ((rules, "f/family.toml"), ("scheme", "f/pump.toml"), ("table", "f/pump.csv")):
         put(kind, name, rng, lambda text, rng: text)
-    put(*rng.choice([("family", "f/family.toml"), ("scheme", "f/pump.toml"), ("table", "f/pump.csv")]), rng)
+    put(*rng.choice([(rules, "f/family.toml"), ("scheme", "f/pump.toml"), ("table", "f/pump.csv")]), rng)
     return all([commanded("show", "f/pump@11"), commanded("list", "cam")])
 
 
-def arguments(rng):
+def arguments(commands, odd, rng):
     """A command with one word more, less, or another one."""
-    words = [*rng.choice(COMMANDS)]
+    words = [*rng.choice(commands)]
     at = rng.randrange(1, len(words) + 1)
-    words[at:at + rng.choice([0, 1])] = rng.choice([[], [rng.choice(ARGUMENTS)], [rng.choice(ARGUMENTS)]])
+    words[at:at + rng.choice([0, 1])] = rng.choice([[], [rng.choice(odd)], [rng.choice(odd)]])
     return commanded(*words)
+
+
+def group_of_strangers(rng):
+    """A class of students of odd names and tasks, whose work is made."""
+    students = [";".join((rng.choice([*NAMES, "../x", "con", "А. Б.", "\x1b[2J", "=1+1"]), rng.choice(["", "Т-1", *NAMES[:9]]),
+                          rng.choice([CAM, CAM, "press@", "x.toml", *NAMES[:3]]))) for _ in range(rng.choice([1, 1, 2]))]
+    Path("r.csv").write_text(edited("student;group;task\n", rng) if rng.random() < 0.2 else "student;group;task\n"
+                             + "\n".join(students), encoding="utf-8", errors="surrogatepass")
+    return commanded("roster", "r.csv", "-o", "o", "--format", "svg", "--jobs", "1", *rng.choice([[], [], [rng.choice(WORDS)]]))
+
+
+# --- Python ------------------------------------------------------------------------------------------------------------
+
+
+VALUES = [None, True, -1, 0, 1, 2, 10**30, 10**400, float("nan"), -float("inf"), 0.5, 1j, "", "x", "\0", "1", "cam", "cam.stroke",
+          "20..30 mm", "nan..inf m", b"x", object(), [], [None], [1, "a"], {}, {"cam.stroke": 1}, {"cam.stroke": "20..30 mm"},
+          {1: 2}, (1, 2), Path("p"), "a" * 10**5, np.float64("nan"), np.int64(2), np.float32(1.5), np.bool_(True), np.array([]),
+          np.array([[1, 2]]), np.arange(3.0), np.array(["a"]), np.datetime64("2020-01-01"), range(3), "en",
+          "max |cam.pressure_angle|", "svg", ["svg"], "30 mm"]
+CALLS = {
+    "numbers": {"phi": 0.5, "phi_deg": None, "positions": None}, "with_": {"cam__stroke": "30 mm", "cam": None, "x": None},
+    "why": {"result": "cam.stroke"}, "protocol": {"plan": "cam"}, "sheet": {"number": 1}, "view": {"name": "cam", "position": ""},
+    "sweep": {"name": "crank.length", "spread": "55..60 mm", "count": 3, "phi_deg": None}, "save": {"path": "x"},
+    "optimise": {"vary": {"cam.stroke": "20..30 mm"}, "least": "max |cam.pressure_angle|", "most": "", "subject_to": (),
+                 "positions": 4, "tries": 1},
+    "template": {"folder": "o", "everything": False}, "build": {"folder": "o", "formats": ["svg"], "sheets": (), "force": False},
+    "compare": {"file": "m.csv", "sheet": None, "kind": None, "pencil": 0.5, "reading": 0.5},
+    "animate": {"sheets": (1,), "plan": "cam"}, "check": {},
+    "open": {"project": CAM, "corrected": False, "language": "en", "student": "x"},
+    "projects": {"word": "cam"}, "new": {"language": "en", "crank": None, "cam": {"stroke": "1 mm"}, "gear": None, "project": None}}
+"""What is called in Python, with right values."""
+
+
+@cache
+def opened(mechanism):
+    """A project in Python, of a cam or a mechanism."""
+    return api.Opened(variant.parse(SMALL["linkage"], "linkage.toml")) if mechanism else api.open(CAM)
+
+
+def called(rng):
+    """A function of Python with an odd value, or some, in places of right ones."""
+    name = rng.choice([*CALLS])
+    right = CALLS[name]
+    found = getattr(api, name) if name in api.__all__ else getattr(opened(name == "sweep" or rng.random() < 0.2), name)
+    given = {**right, **{key: rng.choice(VALUES) for key in rng.sample([*right], min(rng.choice([0, 1, 1, 1, 2, 9]), len(right)))}}
+    try:
+        found(**given)
+    except TypeError as e:
+        if Path(traceback.extract_tb(e.__traceback__)[-1].filename).name != "inspect.py":  # which binds arguments to names
+            raise TypeError(f"{name}({given}): {e}").with_traceback(e.__traceback__) from None
+        return False
+    except (BadInput, CannotBuild):
+        return False
+    except Exception as e:
+        e.args = (f"{name}({str(given)[:300]}): {e}",)
+        raise
+    return True
 
 
 # --- pictures ----------------------------------------------------------------------------------------------------------
@@ -394,11 +327,98 @@ def around(fault, rng):
     return fault(rng)
 
 
+# --- the door of the page ----------------------------------------------------------------------------------------------
+
+
+FORM = b"".join(b'--x\r\nContent-Disposition: form-data; name="%s"%s\r\n\r\n%s\r\n' % part for part in (
+    (b"text", b"", b"[crank]"), (b"lang", b"", b"en"), (b"sheet", b"", b"1"), (b"file", b'; filename="g/A/m.csv"', b"a;b"),
+    (b"file", b'; filename="g/A/x.dxf"', b"0"))) + b"--x--\r\n"
+PATHS = ["", "words", "tasks", "keys", "opened", "living", "check", "group", "compare", "page/page.css", "page/..%2f", "%00",
+         "a" * 9000,
+         "page/%ff", "?lang=en", "words?lang=xx&lang=\u202e", "nothing", "//", "take/x"]
+
+
+class Idle:
+    """In place of the processes that carry out what is asked."""
+
+    async def messages(self, job, asked, *more):
+        yield {"done": {"html": "<script>1</script>"}, "asked": asked}
+
+
+@cache
+def client():
+    """What asks the page, and raises what falls there."""
+    with warnings.catch_warnings(action="ignore"):  # of the next version
+        from starlette.testclient import TestClient
+    with mock.patch.object(page_doors, "Workers", return_value=Idle()):
+        return TestClient(page_doors.app("token", "127.0.0.1", page_doors.Shown()), "http://127.0.0.1")
+
+
+def request(rng):
+    """A request to the page that is right or nearly so."""
+    odd = rng.choice([*NAMES, "..", "x" * 5000, "9" * 40, "-1"]).encode(errors="replace").replace(b"\n", b" ")
+    headers = {b"content-type": rng.choice([b"multipart/form-data; boundary=x"] * 4 + [b"multipart/form-data", b"text/plain",
+                                           odd])}
+    if rng.random() < 0.3:
+        headers[rng.choice([b"host", b"origin", b"content-length", b"sec-fetch-site", b"content-encoding", b"range"])] = odd
+    body = rng.choice([FORM, cut(FORM, rng), cut(FORM, rng), FORM * 50, b"", rng.randbytes(50)])
+    path = f"/{rng.choice(['token'] * 9 + ['', 'tokeN', '%ff'])}/{rng.choice(PATHS)}"
+    answer = client().request(rng.choice(["GET", "POST", "POST", "POST", "HEAD", "PUT"]), path, headers=headers, content=body)
+    assert answer.status_code < 500, (answer.status_code, answer.text)
+    return answer.status_code < 400
+
+
+def archive(rng):
+    """A zip file of earlier sheets that is damaged, into which more are put."""
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as packed:
+        packed.writestr("sheet1.svg", b"<svg>" * 300)
+        packed.writestr(build_store.RECORD, b"{}")
+    place = build_store.Archive(Path("x.zip"))
+    place.place.write_bytes(cut(made.getvalue(), rng))
+    place.check()
+    place.read("sheet1.svg")
+    place.write({"b": b"c"})
+    return place.read("b") == b"c"
+
+
+def workbook(rng):
+    """A workbook whose packed parts are changed, or which is damaged, in place of a table of students."""
+    book, out, changed = openpyxl.Workbook(), io.BytesIO(), io.BytesIO()
+    for row in (["student", "task"], ["А. Б.", time_of_day(3, 2)], ["В", "press"]):
+        book.active.append(row)
+    book.save(out)
+    with zipfile.ZipFile(out) as whole, zipfile.ZipFile(changed, "w") as packed:
+        some = rng.choice(whole.namelist())
+        for name in whole.namelist():
+            text = whole.read(name)
+            packed.writestr(name, edited(text.decode(), rng).encode("utf-8", "surrogatepass") if name == some else text)
+    data = changed.getvalue()
+    Path("r.xlsx").write_bytes(data if rng.random() < 0.7 else cut(data, rng))
+    return roster.read(Path("r.xlsx"))
+
+
+def project_file(rng):
+    """A file made from another one: read, shown, checked, computed; of ten one is drawn."""
+    what, file = case(SMALL | SOURCES, rng)
+    came = [*unfinished(file, rng.random() < 0.1)]
+    assert all(said == REFUSED for _, said in came), (what, came)
+    return not came
+
+
 DOORS = {
-    "arguments": arguments,
+    "project files": project_file,
+    "arguments": partial(arguments, COMMANDS, ARGUMENTS),
+    "sheets, pages, defences": partial(arguments, MAKING, WORDS),
+    "classes": group_of_strangers,
+    "requests": request,
+    "archives": archive,
+    "workbooks": workbook,
+    "Python": called,
     "ciphers": lambda rng: commanded("show", f"transport/{edited(rng.choice(['press@05-ЭПС-123', 'diesel@01-Т-27']), rng)}"),
     "rosters": lambda rng: roster.read(put("roster", "r.csv", rng)),
-    "families": family,
+    "families": partial(family, "family"),
+    "rules of families": partial(family, "rules"),
     "settings": lambda rng: (put("settings", "tmm-sheets.toml", rng), commanded("show", CAM))[1],
     "plotters": lambda rng: plotters.plotter(str(put("plotter", f"x{rng.random()}.toml", rng))),
     "marks": lambda rng: group.read_scheme(put("marks", "m.toml", rng)),
@@ -413,6 +433,18 @@ DOORS = {
     **{kind: partial(around, fault) for kind, fault in FAULTS.items()},
 }
 """What a stranger brings to each door, and what is done with it there: nothing but its work, or words."""
+
+
+LONGEST = 60
+"""Seconds of processor for a case."""
+PIECE = 10
+"""Cases that are tried together."""
+
+
+SHARES = {"project files": 0.7, "sheets, pages, defences": 0.2, "classes": 0.1, "Python": 0.4, "images": 0.2, "PDF": 0.5,
+          "fresh processes": 0.5, "changed files": 0.2}
+OF_FAULTS = 0.06
+"""Shares of the cases asked for that are tried at doors where each takes long; of faults that have none here the second."""
 
 
 def entered(kind, n, seed=0):
@@ -431,19 +463,37 @@ def entered(kind, n, seed=0):
             return f"{type(e).__name__}: {e} ({Path(place.filename).name}:{place.lineno})"
 
 
-def at_door(kind, cases, seed):
-    """Try cases at a door in a folder of their own, and tell how many did what."""
-    found, start, slowest = Counter(), time.perf_counter(), 0.0
+def _late(*_):
+    raise TimeoutError(f"more than {LONGEST} s")
+
+
+def tried(kind, seed, cases):
+    """What came of some cases at a door, each in a folder of its own: counts, processes begun, and the most that one took."""
+    found, slowest, begun = Counter(), 0.0, len(PROCESSES)
+    signal.signal(signal.SIGVTALRM, _late)
     for n in cases:
+        before = sum(os.times()[:4])
         with tempfile.TemporaryDirectory() as folder, chdir(folder):
-            begun = time.perf_counter()
+            signal.setitimer(signal.ITIMER_VIRTUAL, LONGEST)
             came = entered(kind, n, seed)
-            slowest = max(slowest, time.perf_counter() - begun)
+            signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+        slowest = max(slowest, sum(os.times()[:4]) - before)
         if came not in ("done", "refused"):
-            print(f"{n} {kind}: {came}", flush=True)
-        found[came if came in ("done", "refused") else "fell over"] += 1
-    told = ", ".join(f"{n} {came}" for came, n in sorted(found.items()))
-    print(f"{kind}: {len(cases)} cases, {told}; {time.perf_counter() - start:.0f} s, the slowest {slowest:.1f} s", flush=True)
+            print(f"{kind} {n} of seed {seed}: {came}", flush=True)
+        found[came if came in ("done", "refused") else "fell"] += 1
+    memory = max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return {"cases": len(cases), "done": 0, "refused": 0, "fell": 0, **found, "processes": len(PROCESSES) - begun,
+            "seconds": round(slowest, 1), "megabytes": memory // 1000}
+
+
+def together(one, other):
+    """Two counts of a door as one."""
+    return {name: (max if name in ("seconds", "megabytes") else sum)((one.get(name, 0), n)) for name, n in other.items()}
+
+
+def told(tally):
+    return "".join(f"\n[{json.dumps(kind)}]\n" + "".join(f"{name} = {n}\n" for name, n in found.items())
+                   for kind, found in tally.items())
 
 
 def main():
@@ -451,28 +501,29 @@ def main():
     options.add_argument("--cases", type=int, default=300)
     options.add_argument("--seed", type=int, default=0)
     options.add_argument("--first", type=int, default=0)
-    options.add_argument("--small", action="store_true", help="only small files: fast")
     options.add_argument("--door", choices=DOORS, action="append", help="only this door; may be repeated")
-    options.add_argument("files", nargs="*", type=Path)
+    options.add_argument("--jobs", type=int, default=2)
+    options.add_argument("--seconds", type=float, default=float("inf"), help="begin nothing new after so many")
+    options.add_argument("--tally", type=Path, help="file of the counts of a seed, which go on where they ended")
     given = options.parse_args()
-    if not given.files:
-        for kind in given.door or DOORS:
-            at_door(kind, range(given.first, given.first + given.cases), given.seed)
-    if given.door:
-        return
-    sources = {path.stem: path.read_text(encoding="utf-8") for path in given.files} or (SMALL if given.small else SMALL | SOURCES)
-    found = {}
-    for n in range(given.first, given.first + given.cases):
-        what, file = case(sources, random.Random(f"{given.seed}/{n}"))
-        start = time.perf_counter()
-        for step, said in fallen(file):
-            key = re.sub(r"\d", "", said.splitlines()[0].partition(" ")[0] + said[said.rfind("("):])
-            if key not in found:
-                found[key] = n
-                print(f"{n} {step}: {said}\n    {what}", flush=True)
-        if time.perf_counter() - start > 20:
-            print(f"{n} slow: {time.perf_counter() - start:.0f} s\n    {what}", flush=True)
-    print(f"projects: {given.cases} cases, {len(found)} different failures")
+    start = time.monotonic()
+    os.environ.setdefault("TMM_SHEETS_CACHE", tempfile.mkdtemp(prefix="tmm-sheets-"))
+    tally = tomllib.loads(given.tally.read_text()) if given.tally and given.tally.exists() else {"seed": given.seed}
+    if tally.pop("seed") != given.seed:
+        options.error(f"{given.tally} counts cases of another seed")
+    for kind in given.door or DOORS:
+        last = given.first + round(given.cases * SHARES.get(kind, OF_FAULTS if kind in FAULTS else 1))
+        pieces = [range(n, min(n + PIECE, last)) for n in range(given.first + tally.get(kind, {}).get("cases", 0), last, PIECE)]
+        with ProcessPoolExecutor(given.jobs, get_context("spawn")) as pool:
+            for found in pool.map(partial(tried, kind, given.seed), pieces):
+                tally[kind] = together(tally.get(kind, {}), found)
+                if given.tally:
+                    given.tally.parent.mkdir(exist_ok=True)
+                    files.put({given.tally: f"seed = {given.seed}\n{told(tally)}".encode()})
+                if time.monotonic() - start > given.seconds:
+                    pool.shutdown(cancel_futures=True)
+                    return
+    print(told(tally))
 
 
 if __name__ == "__main__":

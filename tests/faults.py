@@ -13,9 +13,17 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import tmm_sheets
+from tests.odd_projects import SMALL, SOURCES, case
 
 CAM, ROOT = "lugansk/cam_flat", Path(tmm_sheets.__file__).parents[1]
 DRAWN = ["build", CAM, "--format", "svg,hpgl", "-o", "o"]
+REFUSED = [["check", "nobody"], ["check", "my.toml"], ["build", "nobody", "-o", "o"], ["solve", CAM, "--part", "forces"],
+           ["build", CAM, "--sheet", "9"], ["why", CAM, "x.y"], ["show", "transport/press@1"],
+           ["compare", CAM, "--measured", "no.csv"], ["plot", CAM, "--plotter", "x"], ["page", CAM, "--plan", "x"],
+           ["defence", CAM, "--sheet", "7"], ["roster", "no.csv"], ["optimise", CAM, "--vary", "x", "--least", "y"],
+           ["new", "a/b", "--groups", "9"], ["family", "check", "x"], ["nothing"]]
+CHEAP = [["list"], ["list", "cam", "--json"], ["--help"], ["--version"], ["check", CAM], ["solve", CAM, "--json", "-"],
+         ["show", CAM]]
 COMMANDS = [DRAWN, [*DRAWN, "--zip"], ["solve", CAM, "--json", "x.json"], ["solve", CAM], ["solve", CAM, "--csv", "x.csv"],
             ["show", CAM], ["show", "mine.toml"], ["list"], ["new", "other", "--from", CAM, "--student", "А", "--group", "Т"],
             ["record", CAM, "--json", "r.json"], ["check", "mine.toml"], ["compare", CAM, "--template", "-o", "o"],
@@ -23,8 +31,8 @@ COMMANDS = [DRAWN, [*DRAWN, "--zip"], ["solve", CAM, "--json", "x.json"], ["solv
                                                                                           "--format", "svg", "--jobs", "2"]]
 MOUNTED = """import os, sys
 os.execvp("unshare", ["unshare", "-m", "sh", "-c", sys.argv[1], "sh", *sys.argv[2:]])"""
-PATIENCE = 100
-"""Seconds for a command, on a busy machine."""
+PATIENCE, LONGEST = 300, 60
+"""Seconds for a command by the clock of a busy machine, and of processor."""
 ENDS = {0, 1, 2, 141, *(128 + number for number in (1, 2, 15)), -signal.SIGKILL}
 """Exit statuses of commands that did their work, told why not, or were ended."""
 CLOCK = """import sys, time
@@ -37,10 +45,20 @@ main()"""
 """The program at another time."""
 
 
-def begun(words, before=None, environment=None, start=("-m", "tmm_sheets"), **settings):
-    """A command in a process of its own; ``before`` is done there first."""
-    there = {**os.environ, "PYTHONPATH": str(ROOT), "TMM_SHEETS_CACHE": "", **(environment or {})}
-    return subprocess.Popen([sys.executable, *start, *words], env=there, preexec_fn=before,
+PROCESSES = []
+"""Those that were begun here."""
+
+
+def begun(words, before=lambda: None, environment=None, start=("-m", "tmm_sheets"), whole=True, **settings):
+    """A command in a process of its own; ``before`` is done there first. Of our environment it has the ``whole`` or nothing."""
+    there = {**(os.environ if whole else {}), "PYTHONPATH": str(ROOT), "TMM_SHEETS_CACHE": "", **(environment or {})}
+
+    def prepare():
+        limited("RLIMIT_CPU", LONGEST)()
+        before()
+
+    PROCESSES.append(words)
+    return subprocess.Popen([sys.executable, *start, *words], env=there, preexec_fn=prepare,
                             **{"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **settings})
 
 
@@ -84,6 +102,7 @@ def told(process, words, streams=True):
     text = (said or b"").decode("utf-8", "replace")
     assert process.returncode in ENDS, (words, process.returncode, text)
     assert "Traceback" not in text, (words, text)
+    assert "Warning" not in text, (words, text)
     assert "internal error" not in text, (words, text)
     assert process.returncode in (0, -signal.SIGKILL, 129, 130, 141, 143) or text or not streams, (words, "without a word")
     return process.returncode == 0
@@ -204,14 +223,64 @@ def clock(rng):
     return told(begun(words), words)
 
 
-def disturbed(rng, before=None, environment=None):
-    words = rng.choice(COMMANDS)
-    return told(begun(words, before, environment), words)
+def disturbed(rng, before=lambda: None, environment=None, commands=COMMANDS, **settings):
+    words = rng.choice(commands)
+    return told(begun(words, before, environment, **settings), words)
+
+
+def changed_file(rng):
+    """A project file made from another one, and a command."""
+    Path("my.toml").write_text(case(SMALL | SOURCES, rng)[1], encoding="utf-8")
+    return disturbed(rng, commands=[
+        ["check", "my.toml"], ["solve", "my.toml"], ["solve", "my.toml", "--json", "x"], ["show", "my.toml"],
+        ["protocol", "my.toml"], ["check", "my.toml", "--lang", "en"], ["why", "my.toml", "cam.stroke"]])
+
+
+def far_places(rng):
+    """Folders of odd names, names that are long, and that are no text."""
+    place = rng.choice(["a" * 255, "a" * 256, "b/" * 900, "b/" * 3000, "~", "//o", "o//..//o", ".", "/", "-", " ", "\udcff", "o\n",
+                        "con", "\u202eo", "%s", "$HOME", "*", "o/./o", "/dev/stdout/o", "mine.toml/o", "mine.toml",
+                        "\x1b[2J", "c:", "s3:x"])
+    words = rng.choice([*REFUSED[:2], DRAWN, ["record", CAM, "--json"], ["new"], ["solve", CAM, "--csv"]])
+    words = [*words[:-1], place] if words is DRAWN else [*words, place]
+    return told(begun(words), words)
+
+
+def nobody_there(rng):
+    """Hardly any environment, the folder gone, or rights that new files do not have."""
+    kind = rng.choice(["bare", "no home", "gone", "mask", "mask", "terminal", "read-only home"])
+    odd = {"TERM": rng.choice(["", "dumb", "x" * 999, "\x1b", "xterm-256color"]),
+           "COLUMNS": rng.choice(["1", "7", "1000000", "-5"]), "LINES": "0", "FORCE_COLOR": "1",
+           "TZ": rng.choice(["", "Asia/Nowhere", "XXX-25", "UTC0", ":"])}
+    mask = rng.choice([0, 0o777, 0o077, 0o222, 0o444])
+    if kind == "read-only home":
+        Path("home").mkdir(mode=0o555)
+    settings = {"bare": {"whole": False}, "gone": {"before": lambda: (os.mkdir("g"), os.chdir("g"), os.rmdir(os.getcwd()))},
+                "no home": {"environment": {"HOME": "", "XDG_CACHE_HOME": "", "TMPDIR": "/nowhere"}},
+                "mask": {"before": lambda: os.umask(mask)},
+                "terminal": {"environment": odd},
+                "read-only home": {"environment": {"HOME": os.path.abspath("home"), "TMPDIR": os.path.abspath("home")}}}[kind]
+    return disturbed(rng, **settings, commands=[*COMMANDS[:4], *CHEAP, *REFUSED])
+
+
+def several_at_once(rng):
+    """Two to four commands in one folder: each does what it does alone."""
+    some = [rng.choice([DRAWN, ["record", CAM, "--json", "o/r.json"], ["solve", CAM, "--json", "o/x.json"],
+                        ["compare", CAM, "--template", "-o", "o"], [*DRAWN[:2], "--format", "dxf", "-o", "o"],
+                        ["new", "o/other", "--from", CAM]]) for _ in range(rng.choice([2, 2, 3, 4]))]
+    Path("cache").mkdir()
+    shared = {"TMM_SHEETS_CACHE": os.path.abspath("cache")}
+    done = [told(process, words) for process, words in [(begun(words, environment=shared), words) for words in some]]
+    assert all(done), (some, "one of several was refused")
+    assert not [*Path().rglob("*.part")]
+    return all(map(agrees, some))
 
 
 FAULTS = {
     "no room": no_room, "read-only folder": read_only, "names taken": in_the_way, "no streams": streams,
     "reader gone": reader_gone, "ended": ended, "two at once": two_at_once, "clock": clock,
+    "fresh processes": lambda rng: disturbed(rng, commands=[*CHEAP, *REFUSED]), "changed files": changed_file,
+    "far places": far_places, "odd users": nobody_there, "several at once": several_at_once,
     "few files": lambda rng: disturbed(rng, limited("RLIMIT_NOFILE", rng.choice([12, 16, 24]))),
     "locale": lambda rng: disturbed(rng, environment=odd_locale(rng)),
     "places": lambda rng: disturbed(rng, environment=odd_places(rng)),

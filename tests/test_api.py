@@ -318,3 +318,20 @@ def test_the_notebook_says_what_it_says():
     text, rich = notebook.current()
     assert text == notebook.NOTEBOOK.read_text("utf-8"), "run: python -m tests.notebook"
     assert rich == ["_repr_svg_", "_repr_svg_", "_repr_svg_", "_repr_html_", "_repr_svg_"]
+
+
+@pytest.mark.parametrize(("call", "said"), [
+    (lambda: tmm_sheets.open(b"\xff"), "project: expected Path | str, not"), (lambda: tmm_sheets.projects(True),
+                                                                              "word: expected str, not True"),
+    (lambda: tmm_sheets.open("press").sheet("one"), "number: expected int, not 'one'"),
+    (lambda: tmm_sheets.open("press").numbers("gear", positions=float("nan")), "positions: expected int | None, not nan"),
+    (lambda: tmm_sheets.open("press").animate([None]), r"sheets: expected Iterable\[int\], not \[None\]"),
+    (lambda: tmm_sheets.new(project=1), r"project: expected Mapping\[str, Any\] | None, not 1"),
+])  # fmt: skip
+def test_an_argument_of_another_type_is_refused_by_its_name(call, said):
+    with pytest.raises(tmm_sheets.BadInput, match=said.replace(" | ", r" \| ")):
+        call()
+
+
+def test_numbers_and_texts_of_numpy_are_arguments():
+    assert tmm_sheets.open(np.str_("press")).sheet(np.int64(1)).svg == tmm_sheets.open("press").sheet(1).svg

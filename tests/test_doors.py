@@ -92,6 +92,14 @@ def test_a_number_out_of_all_ranges(door, old, number, desk, capsys):
     assert f"{file}:" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("digits", ["-1", "18", "1" * 13, "nan", "1.5"])
+def test_digits_that_no_number_has(digits, desk, capsys):
+    derived = f'[machine.pump.derived]\ns = {{ is = "l / 3", digits = {digits} }}\n'
+    Path("f/family.toml").write_text(FAMILY + derived, encoding="utf-8")
+    assert run(["show", "f/pump@11"]) == 2
+    assert "family.toml:7: machine.pump.derived.s.digits: expected a whole number" in capsys.readouterr().err
+
+
 # --- what goes out ----------------------------------------------------------------------------------------------------------
 
 

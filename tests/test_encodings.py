@@ -123,7 +123,7 @@ SAVED = {
 
 @pytest.mark.parametrize("how", SAVED)
 def test_encodings_are_told_apart(how):
-    text, note = encodings.decoded(SAVED[how])
+    text, note = encodings.decoded(SAVED[how], "x", "")
     expected = RUSSIAN if how != "console" else SAVED[how].decode("cp866")
     assert text == expected
     assert bool(note) == (not how.startswith("utf-8"))
@@ -131,7 +131,7 @@ def test_encodings_are_told_apart(how):
 
 @pytest.mark.parametrize("data", [b"", b"a", b"ab = 1\n", b"\xef\xbb\xbf", "т".encode(), "раб".encode(), "╨".encode()])
 def test_short_texts_stay_what_they_are(data):
-    assert encodings.decoded(data) == (data.decode("utf-8-sig"), "")
+    assert encodings.decoded(data, "x", "") == (data.decode("utf-8-sig"), "")
 
 
 @pytest.mark.parametrize(
@@ -145,9 +145,9 @@ def test_short_texts_stay_what_they_are(data):
     ],
 )
 def test_what_is_no_text(data, line, said):
-    with pytest.raises(encodings.NotText, match=said) as e:
-        encodings.decoded(data)
-    assert e.value.line == line
+    with pytest.raises(BadInput, match=said) as e:
+        encodings.decoded(data, "x.toml", "save it")
+    assert [(p.file, p.line, p.hint) for p in e.value.problems] == [("x.toml", line, "save it")]
 
 
 def test_signs_that_nobody_sees():

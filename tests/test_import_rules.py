@@ -258,3 +258,25 @@ def test_no_module_level_mutable_state():
 def test_changed_globals_are_found():
     tree = ast.parse("A = {}\nB = []\nC = 0\ndef f(x):\n    global C\n    A[x] = 1\n    B.append(x)\n    D = []\n    D.append(x)\n")
     assert sorted(changed_globals(tree)) == ["A", "B", "C"]
+
+
+INLINED = ast.ListComp | ast.SetComp | ast.DictComp
+
+
+def mixed_up(tree):
+    """Names of functions that one comprehension calls and another one of the same function has for a variable of its own.
+
+    Python 3.12.1 makes a function's variable of such a name, and the call ends in an UnboundLocalError.
+    """
+    for function in (n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef)):
+        inlined = [n for n in ast.walk(function) if isinstance(n, INLINED)]
+        own = [{n.id for part in c.generators for n in ast.walk(part.target) if isinstance(n, ast.Name)} for c in inlined]
+        for comprehension, names in zip(inlined, own, strict=True):
+            called = {n.func.id for n in ast.walk(comprehension) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)}
+            yield from ((function.name, name) for name in called & set().union(*own) - names)
+
+
+def test_comprehensions_that_python_3_12_1_mixes_up():
+    planted = ast.parse("def f(rows):\n    a = {x: told for x, told in rows}\n    return [told(x) for x in a]\n")
+    assert [*mixed_up(planted)] == [("f", "told")]
+    assert [(module, found) for module in MODULES for found in mixed_up(syntax(module))] == []

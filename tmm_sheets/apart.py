@@ -21,6 +21,8 @@ from typing import TypeVar
 
 SECONDS, MEMORY = 20, 1_000_000_000
 """Seconds of processor and bytes of memory for reading one file."""
+LARGEST = 400_000_000
+"""Bytes of the largest file that is written within limits, and of the largest answer that is taken."""
 WAITING = 6.0
 """How many times its seconds it may take by the clock: others work too."""
 T = TypeVar("T")
@@ -73,6 +75,7 @@ def limit(seconds: int, memory: int) -> None:
         resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
         resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (LARGEST, LARGEST))
 
 
 def _answer(module: str, name: str, path: Path, languages: tuple[str, str], seconds: int, memory: int) -> tuple[str, object]:

@@ -5,14 +5,16 @@ The commands are made of the same.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property, wraps
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import nullcontext
+from functools import cache, cached_property, wraps
 from html import escape
+from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, ParamSpec, TypeVar, cast
 
 from tmm_sheets import catalogue, files, words
-from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.project import Project
 from tmm_sheets.result_files import frame_of
 from tmm_sheets.task import edited_text, title_entries, units
@@ -33,13 +35,51 @@ __all__ = ["BadInput", "CannotBuild", "Findings", "Opened", "Optimised", "Page",
 
 P = ParamSpec("P")
 T = TypeVar("T")
+Language = Literal["", "ru", "uk", "en"]
+"""Of sheets and of what is said of them: the project's where it is not told."""
 ALONE = ("gear", "reducer", "train", "cam")
 """Parts that follow from their own tables and from nothing else of the file."""
 HEIGHT = 720
 """Height of a page in a notebook, pixels."""
 
 
-def open(project: Path | str, *, corrected: bool = False, language: str = "", **title: str) -> Opened:
+@cache
+def _reader(annotation: str) -> Any:
+    """What reads an argument of a type, or raises a ValueError."""
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(cast(Any, annotation)).validate_python
+
+
+def _asked(function: Callable[P, T]) -> Callable[P, T]:
+    """Decorator: arguments are of the types that the function tells, numbers of numpy too, or BadInput says which is not.
+
+    What a method of a project says is in the language of its sheets.
+    """
+    whole = signature(function)
+
+    @wraps(function)
+    def answered(*args: P.args, **named: P.kwargs) -> T:
+        bound = whole.bind(*args, **named)
+        with words.on_paper(args[0].language) if args and isinstance(args[0], Opened) else nullcontext():
+            for name, value in bound.arguments.items():
+                told = whole.parameters[name]
+                if isinstance(told.annotation, str):
+                    wanted = (f"tuple[{told.annotation}, ...]" if told.kind is told.VAR_POSITIONAL else
+                              f"dict[str, {told.annotation}]" if told.kind is told.VAR_KEYWORD else told.annotation)
+                    try:
+                        read = _reader(wanted)(value)
+                        bound.arguments[name] = tuple(read) if isinstance(read, Iterator) else read
+                    except ValueError:
+                        raise BadInput(Problem(tell("expected {what}, not {given}").format(what=wanted, given=repr(value)),
+                                               field=name)) from None
+            return function(*bound.args, **bound.kwargs)
+
+    return answered
+
+
+@_asked
+def open(project: Path | str, *, corrected: bool = False, language: Language = "", **title: str) -> Opened:
     """A project of a shipped name (``lugansk/shaper``) or of a file.
 
     Parameters
@@ -63,7 +103,9 @@ def open(project: Path | str, *, corrected: bool = False, language: str = "", **
     return Opened(with_room(catalogue.read(str(project), corrected)), title_entries.given(title), language)
 
 
-def new(name: str = "mechanism", /, *, language: str = "", **tables: Any) -> Opened:
+@_asked
+def new(name: str = "mechanism", /, *, language: Language = "", project: Mapping[str, Any] | None = None,
+        **tables: Any) -> Opened:
     """A project made here: its tables as in a project file, ``crank={"length": "60 mm", ...}``, ``group=[{...}, ...]``.
 
     The tables are written as TOML and read as every project file is.
@@ -73,25 +115,15 @@ def new(name: str = "mechanism", /, *, language: str = "", **tables: Any) -> Ope
     BadInput
         with everything that is wrong in the tables.
     """
-    head = {"name": name, "title": name} | dict(tables.pop("project", {}))
+    head = {"name": name, "title": name} | dict(project or {})
     text = edited_text.written({"schema": 1, "project": head} | tables)
     return Opened(variants.parse(text, f"{name}{catalogue.SUFFIX}"), title_entries.given({}), language)
 
 
+@_asked
 def projects(word: str = "") -> tuple[ShippedProject, ...]:
     """The shipped projects, or those with a word in their names or titles."""
     return catalogue.found(word) if word else catalogue.entries()
-
-
-def _on_paper(method: Callable[Concatenate[Opened, P], T]) -> Callable[Concatenate[Opened, P], T]:
-    """Decorator: what is said by a method of a project is in the language of its sheets."""
-
-    @wraps(method)
-    def spoken(self: Opened, /, *args: P.args, **named: P.kwargs) -> T:
-        with words.on_paper(self.language):
-            return method(self, *args, **named)
-
-    return spoken
 
 
 class Opened:
@@ -106,9 +138,6 @@ class Opened:
     """
 
     def __init__(self, variant: Variant, names: Names | None = None, language: str = "") -> None:
-        if language and language not in words.LANGUAGES:
-            raise BadInput(tell('unknown language "{language}"').format(language=language),
-                           tell("known are {known}").format(known=", ".join(words.LANGUAGES)))
         self._read, self._names = variant, names
         self.language = language or words.of_project(variant.project.language)
         self.project = Project(names.filled(variant) if names is not None else variant)
@@ -123,6 +152,7 @@ class Opened:
         """The project file."""
         return self._read.text
 
+    @_asked
     def save(self, path: Path | str) -> Path:
         """Write the project file."""
         return _saved(path, self.text)
@@ -132,6 +162,7 @@ class Opened:
         """What is doubtful in the numbers: suspected misprints of the manuals' tables."""
         return self._read.warnings
 
+    @_asked
     def with_(self, changes: Mapping[str, Any] | None = None, /, **more: Any) -> Opened:
         """The project with other values in its file: ``with_(crank__length="60 mm")``, ``with_({"group[0].lengths[1]": "0.2 m"})``.
 
@@ -156,8 +187,9 @@ class Opened:
 
     # --- numbers ----------------------------------------------------------------------------------------------------------
 
-    @_on_paper
-    def numbers(self, *parts: str, phi: Any = None, phi_deg: Any = None, positions: int | None = None) -> Numbers:
+    @_asked
+    def numbers(self, *parts: str, phi: float | Iterable[float] | None = None, phi_deg: float | Iterable[float] | None = None,
+                positions: int | None = None) -> Numbers:
         """Numbers of some parts, of all that the project has unless told, as arrays by their paths.
 
         Parameters
@@ -184,15 +216,12 @@ class Opened:
         if sum(x is not None for x in (phi, phi_deg, positions)) > 1:
             raise BadInput(tell("give one of phi, phi_deg and positions"))
         _check_count("positions", positions, 1)
-        try:
-            at = phi if phi_deg is None else np.radians(np.asarray(phi_deg, dtype=float))
-            angles = None if at is None else tuple(np.atleast_1d(np.asarray(at, dtype=float)).tolist())
-        except (TypeError, ValueError, OverflowError) as e:
-            raise BadInput(tell("phi: expected angles in a row: {why}").format(why=e)) from None
+        at = phi if phi_deg is None else np.radians(phi_deg)  # type: ignore[arg-type]
+        angles = None if at is None else tuple(np.atleast_1d(at).tolist())  # type: ignore[arg-type]
         refused: dict[str, CannotBuild] = {}
         return Numbers(results.told(self.project, parts or None, phi=angles, positions=positions, refused=refused), refused)
 
-    @_on_paper
+    @_asked
     def sweep(self, name: str, spread: str, count: int = 50, *parts: str, phi_deg: Any = None) -> Swept:
         """Positions, velocities and accelerations for many values of one number of the file, by one function of all of them.
 
@@ -243,28 +272,28 @@ class Opened:
         return made
 
     @cached_property
-    @_on_paper
+    @_asked
     def record(self) -> dict[str, Any]:
         """The record: every number with its step, every mark with what it shows, as docs/record.md tells."""
         from tmm_sheets.record import recording
 
         return recording.record(self.project)[0]
 
-    @_on_paper
+    @_asked
     def why(self, result: str) -> Said:
         """The steps from the given numbers to a result, a line each."""
         from tmm_sheets.record import why
 
         return Said("\n".join(why.lines(self.project, result)))
 
-    @_on_paper
+    @_asked
     def protocol(self, plan: str | None = None) -> Said:
         """The construction steps of the sheets, or of one plan, as sentences."""
         from tmm_sheets import protocols
 
         return Said("\n".join(protocols.lines(self.project, plan)))
 
-    @_on_paper
+    @_asked
     def optimise(self, vary: Mapping[str, str] | Iterable[str], least: str = "", *, most: str = "", subject_to: Iterable[str] = (),
                  positions: int | None = None, tries: int | None = None, say: Callable[[int], None] = lambda n: None) -> Optimised:
         """Look for numbers of the file that make a wish least, or greatest, within bounds (docs/optimise.md).
@@ -301,7 +330,7 @@ class Opened:
 
     # --- sheets -----------------------------------------------------------------------------------------------------------
 
-    @_on_paper
+    @_asked
     def check(self) -> tuple[str, ...]:
         """Assemble everything; what no pencil can draw and what else is to be said, a line each.
 
@@ -327,7 +356,7 @@ class Opened:
         told += project.flywheel.remarks if variant.flywheel is not None else ()
         return tuple(map(str, told))
 
-    @_on_paper
+    @_asked
     def sheet(self, number: int) -> Picture:
         """A sheet; a notebook shows it.
 
@@ -345,14 +374,14 @@ class Opened:
         return Picture(sheet.compose(self.project, n))
 
     @property
-    @_on_paper
+    @_asked
     def scheme(self) -> Picture:
         """How the mechanism is understood: its plan of positions."""
         from tmm_sheets.output import view_pictures
 
         return view_pictures.scheme(self.project)
 
-    @_on_paper
+    @_asked
     def view(self, name: str, position: int | str = "") -> Picture:
         """The first view that shows a plan (``accelerations``) or has a name in its title, of a position where one is told.
 
@@ -365,7 +394,7 @@ class Opened:
 
         return view_pictures.named(self.project, name, str(position))
 
-    @_on_paper
+    @_asked
     def animate(self, sheets: Iterable[int] = (), plan: str = "") -> Page:
         """The living page, in which plans are drawn, turned, changed and asked; a notebook shows it.
 
@@ -375,7 +404,7 @@ class Opened:
 
         return Page(page.page(self.project, self.project.variant.chosen(sheets), plan)[0])
 
-    @_on_paper
+    @_asked
     def build(self, folder: Path | str, *, formats: Sequence[str] = ("dxf", "pdf"), sheets: Iterable[int] = (),
               force: bool = False) -> tuple[Path, ...]:
         """Write the sheets into a folder; what is current is not made again.
@@ -395,9 +424,10 @@ class Opened:
 
     # --- what was drawn by hand -------------------------------------------------------------------------------------------
 
-    @_on_paper
-    def compare(self, file: Path | str, sheet: int | None = None, *, kind: Kind | None = None, views: Path | None = None,
-                pencil: float = 0.25, reading: float = 0.5, read_numbers: bool = False) -> Findings:
+    @_asked
+    def compare(self, file: Path | str, sheet: int | None = None, *,
+                kind: Literal["measured", "dxf", "image"] | None = None, views: Path | None = None, pencil: float = 0.25,
+                reading: float = 0.5, read_numbers: bool = False) -> Findings:
         """What a drawing has wrong: a table of measured numbers (.csv), a CAD drawing (.dxf), a photograph.
 
         Parameters
@@ -424,7 +454,7 @@ class Opened:
         by_name: Kind = {".csv": "measured", ".dxf": "dxf"}.get(path.suffix.lower(), "image")  # type: ignore[assignment]
         return Findings(compared(self.project, kind or by_name, path, sheet, views, pencil, reading, read_numbers))
 
-    @_on_paper
+    @_asked
     def template(self, folder: Path | str = ".", everything: bool = False) -> Path:
         """Write a table to fill in with what is measured on one's own sheets: the main numbers, or ``everything`` that can be.
 
@@ -525,6 +555,7 @@ class Page(str):
 
     __slots__ = ()
 
+    @_asked
     def save(self, path: Path | str) -> Path:
         """Write the page."""
         return _saved(path, self)

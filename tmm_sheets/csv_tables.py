@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+import warnings
 import zipfile
 from collections.abc import Iterable, Iterator, Sequence
 from datetime import time
@@ -13,12 +14,13 @@ from typing import Any
 
 from tmm_sheets import encodings, files, quoting
 from tmm_sheets.errors import BadInput, Problem, reason_of
-from tmm_sheets.words import tell
+from tmm_sheets.words import marked, tell
 
 LARGEST = 10_000_000
 """Bytes of the largest table that is read."""
 UNPACKED, COLUMNS, ROWS = 100_000_000, 100, 20_000
 """Bytes of what a workbook has packed, columns and rows that are read of one, at most."""
+SAVE = marked("save the table as CSV in UTF-8")
 _COMPUTED = re.compile(r"\s*([=@＝＋＠－\t\r]|[+-](?!$))")
 """How a text begins that a program would compute; a sign alone is none."""
 
@@ -37,10 +39,7 @@ def text_of(path: Path, hint: str) -> str:
         raise BadInput(Problem(tell("cannot be read: {why}").format(why=reason_of(e)), str(path), hint=hint)) from None
     if data[:2] == b"PK":
         return _of_workbook(data, str(path))
-    try:
-        return encodings.cleaned(encodings.decoded(data).text)
-    except encodings.NotText as e:
-        raise BadInput(Problem(str(e), str(path), e.line, hint=tell("save the table as CSV in UTF-8"))) from None
+    return encodings.cleaned(encodings.decoded(data, str(path), SAVE).text)
 
 
 def rows(text: str, file: str, remark: str = "\0") -> Iterator[tuple[int, list[str]]]:
@@ -91,15 +90,16 @@ def _of_workbook(data: bytes, file: str) -> str:
         raise BadInput(Problem(tell("a workbook is read by openpyxl, which is not installed"), file, hint=hint)) from None
     out = io.StringIO()
     try:
-        with zipfile.ZipFile(io.BytesIO(data)) as packed:
+        with zipfile.ZipFile(io.BytesIO(data)) as packed, warnings.catch_warnings(action="ignore"):  # of what it passes over
             if sum(member.file_size for member in packed.infolist()) > UNPACKED:
                 raise ValueError(tell("too large"))
-        book = openpyxl.load_workbook(io.BytesIO(data), read_only=True, data_only=True)
-        csv.writer(out, delimiter=";", lineterminator="\n").writerows(
-            [_told(cell) for cell in row] for row in book.worksheets[0].iter_rows(max_row=ROWS, max_col=COLUMNS, values_only=True))
+            book = openpyxl.load_workbook(io.BytesIO(data), read_only=True, data_only=True)
+            csv.writer(out, delimiter=";", lineterminator="\n").writerows(
+                [_told(cell) for cell in row]
+                for row in book.worksheets[0].iter_rows(max_row=ROWS, max_col=COLUMNS, values_only=True))
     except Exception as e:  # whatever is wrong in a file that somebody else's program wrote
         raise BadInput(Problem(tell("cannot be read as a workbook: {why}").format(why=e), file,
-                               hint=tell("save the table as CSV in UTF-8"))) from None
+                               hint=tell(SAVE))) from None
     return encodings.cleaned(out.getvalue())
 
 

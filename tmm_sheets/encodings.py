@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 from unicodedata import category, normalize
 
+from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.words import tell
 
 WINDOWS, CONSOLE = "cp1251", "cp866"
@@ -20,31 +22,26 @@ class DecodedText(NamedTuple):
     note: str = ""
 
 
-class NotText(ValueError):
-    """Bytes that are no text, or one in an encoding that cannot be told; ``line`` counts from 1."""
-
-    def __init__(self, message: str, line: int | None = None) -> None:
-        super().__init__(message)
-        self.line = line
-
-
-def decoded(data: bytes) -> DecodedText:
+def decoded(data: bytes, file: str, hint: str) -> DecodedText:
     """Text of a file in UTF-8 or UTF-16, with or without byte order mark, or in a code page of a Russian Windows.
 
     Raises
     ------
-    NotText
-        for binary data, damaged UTF-8, another code page.
+    BadInput
+        for binary data, damaged UTF-8, another code page, by the line where it is at one; ``hint``, marked, says what to try.
     """
+    def refused(why: str, line: int | None = None) -> BadInput:
+        return BadInput(Problem(why, file, line, hint=tell(hint)))
+
     wide = _utf_16(data)
     try:
         text = data.decode(wide or "utf-8-sig").removeprefix("\ufeff")
     except UnicodeDecodeError as e:
         if wide:
-            raise NotText(tell("UTF-16 text that ends in the middle of a character")) from None
-        return _of_windows(data, e)
+            raise refused(tell("UTF-16 text that ends in the middle of a character")) from None
+        return _of_windows(data, e, refused)
     if "\0" in text:
-        raise NotText(tell("not a text file"), text.count("\n", 0, text.index("\0")) + 1)
+        raise refused(tell("not a text file"), text.count("\n", 0, text.index("\0")) + 1)
     meant = _redirected(text)
     if meant is not None:
         return DecodedText(meant, tell(
@@ -62,20 +59,20 @@ def _utf_16(data: bytes) -> str:
     return ""
 
 
-def _of_windows(data: bytes, e: UnicodeDecodeError) -> DecodedText:
+def _of_windows(data: bytes, e: UnicodeDecodeError, refused: Callable[[str, int], BadInput]) -> DecodedText:
     line = data.count(b"\n", 0, e.start) + 1
     read = data.decode("utf-8-sig", "replace")
     broken = read.count("\ufffd")
     if sum(c > "\x7f" for c in read) > 2 * broken:
-        raise NotText(tell("not UTF-8 text here, though it is elsewhere"), line)
+        raise refused(tell("not UTF-8 text here, though it is elsewhere"), line)
     if any(b < 32 and b not in b"\t\n\f\r" for b in data):
-        raise NotText(tell("not a text file"), line)
+        raise refused(tell("not a text file"), line)
     for page in (WINDOWS, CONSOLE):
         text = data.decode(page, "replace")
         high = [c for c in text if c > "\x7f"]
         if sum(c in _EXPECTED for c in high) > 0.9 * len(high):
             return DecodedText(text, tell("read in code page {page}, it is not UTF-8").format(page=page.removeprefix('cp')))
-    raise NotText(tell("neither UTF-8 nor in the code page 1251"), line)
+    raise refused(tell("neither UTF-8 nor in the code page 1251"), line)
 
 
 def _redirected(text: str) -> str | None:

@@ -48,10 +48,7 @@ def text_of(path: Path, hint: str = "", most: int = LARGEST) -> tuple[str, str]:
         raise BadInput(Problem(tell("expected a project file, this is a folder"), file)) from None
     except OSError as e:
         raise BadInput(Problem(tell("cannot be read: {why}").format(why=reason_of(e)), file)) from None
-    try:
-        text, note = encodings.decoded(data)
-    except encodings.NotText as e:
-        raise BadInput(Problem(str(e), file, e.line, hint=tell("save the file in the encoding UTF-8"))) from None
+    text, note = encodings.decoded(data, file, marked("save the file in the encoding UTF-8"))
     return encodings.cleaned(text), note
 
 

@@ -1,8 +1,8 @@
 """The page: whole and alone, the same bytes each time; what it computes is what `solve` computes; its film runs to the end."""
 
-import gzip
 import json
 import re
+import zlib
 from base64 import b64decode
 from functools import cache
 
@@ -46,7 +46,7 @@ def made(name, sheets=()):
 
 def record_of(text):
     packed = re.search('id="record">([^<]*)<', text)[1]
-    return json.loads(gzip.decompress(b64decode(packed)))
+    return json.loads(zlib.decompress(b64decode(packed)))
 
 
 def program_of(text):

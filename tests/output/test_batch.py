@@ -310,9 +310,12 @@ def test_archives(tmp_path, capsys):
     packed.unlink()
     assert run(["build", CAMS[0], "--format", "svg", "-o", str(out), "--zip"]) == 0
     assert packed.read_bytes() == first
-    packed.write_bytes(b"mine")
-    assert run(["build", CAMS[0], "--format", "svg", "-o", str(out), "--zip"]) == 2
-    assert packed.read_bytes() == b"mine"
+    damaged = first[:len(first) // 2] + b"here it is damaged" + first[len(first) // 2 + 18:]
+    for other in (b"mine", damaged, first[:-30]):  # what can be read of such a one would be lost
+        packed.write_bytes(other)
+        assert run(["build", CAMS[0], "--format", "svg", "-o", str(out), "--zip"]) == 2
+        assert "expected a zip file" in capsys.readouterr().err
+        assert packed.read_bytes() == other
 
 
 def test_names_of_a_batch(tmp_path, monkeypatch):

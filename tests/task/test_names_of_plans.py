@@ -9,8 +9,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from tests.attack import SOURCES
 from tests.few import seldom
+from tests.odd_projects import SOURCES
 from tests.project_files import merged, project
 from tmm_sheets import results
 from tmm_sheets.project import Project

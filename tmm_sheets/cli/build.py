@@ -127,14 +127,12 @@ def _listed(file: str) -> list[str]:
     import sys
 
 
-    hint = tell("a list names a project in each line, in UTF-8")
+    hint = marked("a list names a project in each line, in UTF-8")
     try:
         data = sys.stdin.buffer.read() if file == "-" else files.content(Path(file))
-        return encodings.cleaned(encodings.decoded(data).text).splitlines()
     except OSError as e:
-        raise BadInput(Problem(tell("cannot be read: {why}").format(why=reason_of(e)), file, hint=hint)) from None
-    except encodings.NotText as e:
-        raise BadInput(Problem(str(e), file, e.line, hint=hint)) from None
+        raise BadInput(Problem(tell("cannot be read: {why}").format(why=reason_of(e)), file, hint=tell(hint))) from None
+    return encodings.cleaned(encodings.decoded(data, file, hint).text).splitlines()
 
 
 def build_one(project: str, order: Order) -> None:

@@ -88,7 +88,7 @@ def motion(project: Project, index: StepIndex) -> MotionProgram:
             if np.array_equal(value_of(x), row) and id(x) not in rows:
                 rows[id(x)] = {"angle": name}
     found = wheel.found if wheel is not None else []
-    rows |= {id(x): told for x, told in found}
+    rows |= {id(x): row for x, row in found}
     objects = {id(x): x for x in (*angles, *(x for x, _ in found)) if id(x) in rows} | taken
     # A number that a search finds makes nothing move by itself.
     over = {key: x for key, x in objects.items() if "row" not in rows[key] or rows[key]["row"] in ("ahead", "sign")}

@@ -5,9 +5,9 @@ Its words in the language of the sheets, and the sliders: what the schema of the
 
 from __future__ import annotations
 
-import gzip
 import json
 import re
+import zlib
 from base64 import b64encode
 from collections.abc import Iterable, Mapping
 from copy import deepcopy
@@ -108,8 +108,7 @@ def _units(record: Mapping[str, Any]) -> dict[str, str]:
 
 def _written(record: Mapping[str, Any], made: MotionProgram | None) -> str:
     """The file: style, data and modules in their places of the template."""
-    packed = gzip.compress(json.dumps(record, ensure_ascii=False, separators=(",", ":")).encode(), 9, mtime=0)
-    packed = packed[:9] + b"\3" + packed[10:]  # where it was packed is told differently by each version of Python
+    packed = zlib.compress(json.dumps(record, ensure_ascii=False, separators=(",", ":")).encode(), 9)
     programs = ",\n".join(f"{name}: {one.source.text}" for name, one in (made.programs.items() if made is not None else ()))
     parts = {
         "lang": str(record["lang"]), "title": escape(", ".join(filter(None, (record["project"], record["variant"])))),

@@ -12,6 +12,7 @@ import json
 import re
 import zipfile
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import count
@@ -97,10 +98,10 @@ class Archive:
         Raises
         ------
         BadInput
-            when it cannot, or is something else than a zip file.
+            when it cannot, or is something else than a zip file, or a damaged one.
         """
         files.check_folder(self.place.parent)
-        if self.place.exists() and not zipfile.is_zipfile(self.place):
+        if self._members() is None:
             raise BadInput(Problem(tell("expected a zip file"), str(self.place), hint=tell("choose another place with -o")))
 
     def sweep(self, names: Iterable[str]) -> None:
@@ -113,18 +114,23 @@ class Archive:
 
     def read(self, name: str) -> bytes | None:
         """Content of a member; None when there is none."""
+        with suppress(Exception), zipfile.ZipFile(self.place) as archive:
+            return archive.read(name)
+        return None
+
+    def _members(self) -> dict[str, bytes] | None:
+        """All members; None when one of them cannot be read."""
         try:
             with zipfile.ZipFile(self.place) as archive:
-                return archive.read(name)
-        except (OSError, KeyError, zipfile.BadZipFile):
+                return {name: archive.read(name) for name in archive.namelist()}
+        except FileNotFoundError:
+            return {}
+        except Exception:  # each kind of damage raises an error of its own
             return None
 
     def write(self, made: Mapping[str, bytes]) -> None:
         """Write members, those not written now stay; the archive appears whole or not at all."""
-        members = dict(made)
-        if self.place.exists():
-            with zipfile.ZipFile(self.place) as old:
-                members = {name: old.read(name) for name in old.namelist()} | members
+        members = {**(self._members() or {}), **made}
         files.write_all({self.place: files.zipped({name: members[name] for name in sorted(members)})})
 
 

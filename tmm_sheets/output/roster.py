@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -79,12 +78,12 @@ def read(path: Path, task: str = "") -> list[Enrolled]:
             one = _enrolled(row, path.parent, task)
             key = files.alike(one.folder), files.alike(one.group)
             if key in lines:
-                raise _Wrong("student", tell("{name} stands in line {line} already").format(name=one.student, line=lines[key]),
+                raise _wrong("student", tell("{name} stands in line {line} already").format(name=one.student, line=lines[key]),
                              tell("tell them apart by initials"))
             lines[key] = line
             found.append(one)
-        except _Wrong as e:
-            problems.append(Problem(e.message, file, line, e.column, e.hint))
+        except BadInput as e:
+            problems += [replace(problem, file=file, line=line) for problem in e.problems]
             if len(problems) == MOST:
                 problems.append(Problem(tell("the lines below are not looked at before these are right"), file, line))
                 break
@@ -104,10 +103,9 @@ def _told_apart(students: Sequence[Enrolled]) -> list[Enrolled]:
         groups[files.alike(s.folder)]) > 1 else s for s in students]
 
 
-class _Wrong(Exception):
-    def __init__(self, column: str, message: str, hint: str = "") -> None:
-        super().__init__(message)
-        self.column, self.message, self.hint = column, message, hint
+def _wrong(column: str, message: str, hint: str = "") -> BadInput:
+    """What is wrong in a column; its line is told by who reads the table."""
+    return BadInput(Problem(message, field=column, hint=hint))
 
 
 def _columns(head: list[str], line: int, file: str, task: str) -> dict[str, int]:
@@ -148,10 +146,10 @@ def _enrolled(row: Mapping[str, str], beside: Path, task: str) -> Enrolled:
         try:
             texts[column] = title_text(row.get(column, ""))
         except ValueError as e:
-            raise _Wrong(column, str(e)) from None
+            raise _wrong(column, str(e)) from None
     folder = files.name_of(texts["student"], spaced=True)
     if not folder:
-        raise _Wrong("student", tell("expected a name"))
+        raise _wrong("student", tell("expected a name"))
     told = {key: row.get(key, "") for key in ("task", "variant", "cipher")}
     project = _project(told, beside, task)
     column = next((key for key in ("cipher", "variant", "task") if told[key]), "task")
@@ -159,7 +157,7 @@ def _enrolled(row: Mapping[str, str], beside: Path, task: str) -> Enrolled:
         catalogue.read(project)
     except (BadInput, CannotBuild) as e:
         said, _, hint = str(e).partition("\n")
-        raise _Wrong(column, said, hint.strip()) from None
+        raise _wrong(column, said, hint.strip()) from None
     return Enrolled(texts["student"], texts["group"], project, folder)
 
 
@@ -172,18 +170,18 @@ def _project(told: Mapping[str, str], beside: Path, common: str) -> str:
     if own:
         called = machine if sign else re.split("[:@]", task)[0]
         if not called and own.isdecimal():
-            raise _Wrong("variant", tell("expected a task beside the variant, such as 3"),
+            raise _wrong("variant", tell("expected a task beside the variant, such as 3"),
                          tell("or one task for all: --task PROJECT"))
         if not called:
-            raise _Wrong(column, tell("expected a machine beside the cipher: diesel, press, compressor or crusher"),
+            raise _wrong(column, tell("expected a machine beside the cipher: diesel, press, compressor or crusher"),
                          tell("in a column task, or for all --task transport/diesel"))
         machine = _machine(called, varied=True)
         family = families.of(machine)
         if family is None:
-            raise _Wrong("task", tell("{machine} has no variants").format(machine=called))
+            raise _wrong("task", tell("{machine} has no variants").format(machine=called))
         return f"{machine}{family.rules.separator}{own}"
     if not task:
-        raise _Wrong("task", tell("expected a task, such as sixbar/3:2"))
+        raise _wrong("task", tell("expected a task, such as sixbar/3:2"))
     if re.fullmatch(r"\d+:\d+", task):
         return f"sixbar/{task}"
     with suppress(OSError, ValueError):
@@ -202,7 +200,7 @@ def _machine(called: str, varied: bool) -> str:
     names, titles = _words(catalogue.entries(), varied)
     meant = [*(names.get(called.casefold()) or titles.get(called.casefold()) or ())]
     if len(meant) > 1:
-        raise _Wrong("task", tell('"{task}" may be several').format(task=called), either(meant))
+        raise _wrong("task", tell('"{task}" may be several').format(task=called), either(meant))
     return meant[0] if meant else called
 
 
@@ -249,17 +247,10 @@ def lists(students: Sequence[Enrolled], done: Mapping[str, Outcome], folder: Pat
 
     Paths of project files are as seen from the folder of both: it may be moved, or put on another machine, with what it is about.
     """
-    found = {s.folder: s.project if catalogue.is_shipped(s.project) else _from(folder, s.project) for s in students}
+    found = {s.folder: s.project if catalogue.is_shipped(s.project) else files.seen_from(folder / PROJECTS, Path(s.project))
+             for s in students}
     lines = (" = ".join(json.dumps(text, ensure_ascii=False) for text in pair) + "\n" for pair in found.items())
     return {TABLE: csv_tables.written(_table(students, done)), PROJECTS: "".join(lines).encode()}
-
-
-def _from(folder: Path, project: str) -> str:
-    try:
-        return Path(os.path.relpath(project, folder)).as_posix()
-    except ValueError:  # on another drive of Windows
-        return os.path.abspath(project)
-
 
 
 # --- a family of tasks tried -------------------------------------------------------------------------------------------------

@@ -415,10 +415,8 @@ class Shown:
         """What the page opens with."""
         text = self.text
         if self.followed is not None:
-            try:
+            with suppress(BadInput):
                 text = toml_file.text_of(self.followed)[0]
-            except BadInput:
-                text = ""
         return {"name": self.name, "text": text, "followed": self.followed is not None}
 
     async def saved(self) -> AsyncIterator[dict[str, str | bool]]:

@@ -55,14 +55,15 @@ def serve(shown: Shown, host: str, port: int | None, tell_address: Callable[[str
 
     listening = _listening(host, port)
     token = token_urlsafe(24)
-    number = listening.getsockname()[1]
     named = {"0.0.0.0": "127.0.0.1", "::": "[::1]"}.get(host, f"[{host}]" if ":" in host else host)
     app = doors.app(token, host, shown)
-    level = "error" if os.environ.get("TMM_SHEETS_TRACEBACK") else "critical"
-    config = uvicorn.Config(app, log_level=level, access_log=False, server_header=False, lifespan="off", ws="none",
-                            timeout_graceful_shutdown=1, limit_concurrency=200, http=patient())
+    config = uvicorn.Config(app, log_level="error" if os.environ.get("TMM_SHEETS_TRACEBACK") else "critical", access_log=False,
+                            server_header=False, lifespan="off", ws="none", timeout_graceful_shutdown=1, limit_concurrency=200,
+                            http=patient(),
+                            # What is wrong with a form is told in the answer, not on the terminal.
+                            log_config={"version": 1, "loggers": {"python_multipart": {"level": "CRITICAL"}}})
     threading.Thread(target=workers.warm, daemon=True).start()
-    tell_address(f"http://{named}:{number}/{token}/")
+    tell_address(f"http://{named}:{listening.getsockname()[1]}/{token}/")
     uvicorn.Server(config).run(sockets=[listening])
 
 

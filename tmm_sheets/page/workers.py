@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from multiprocessing.context import BaseContext
     from multiprocessing.process import BaseProcess
 
-LARGEST_ANSWER = 400_000_000
-"""Bytes of the largest message from a process."""
 NICE = {"long": 5, "behind": 10}
 """By how much work in a lane gives way to other work."""
 WAITING = 20.0
@@ -116,10 +114,6 @@ def _limit(limits: Limits) -> None:
     if hasattr(os, "nice"):
         os.nice(NICE.get(limits.lane, 0))
     apart.limit(limits.seconds, limits.memory)
-    with suppress(ImportError, ValueError, OSError):
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_FSIZE, (LARGEST_ANSWER, LARGEST_ANSWER))
 
 
 @cache
@@ -212,7 +206,7 @@ async def _said(process: BaseProcess, connection: Connection, limits: Limits) ->
     latest = clock() + WAITING * limits.seconds
     try:
         while True:
-            data = await asyncio.wait_for(asyncio.to_thread(connection.recv_bytes, LARGEST_ANSWER), latest - clock())
+            data = await asyncio.wait_for(asyncio.to_thread(connection.recv_bytes, apart.LARGEST), latest - clock())
             message = json.loads(data)
             yield message
             if _ends(message):

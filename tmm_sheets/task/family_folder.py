@@ -13,6 +13,7 @@ from decimal import Decimal, InvalidOperation
 from functools import cached_property
 from pathlib import Path
 from string import Template
+from typing import Annotated
 
 from pydantic import Field
 
@@ -21,6 +22,7 @@ from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.task import family_tables, messages
 from tmm_sheets.task.family_tables import SOURCE, Choice, Cipher, CipherForm, CipherTable, Row, filled, of_signs
 from tmm_sheets.task.schema import Table
+from tmm_sheets.task.values import whole
 from tmm_sheets.task.variant import Misprint, Variant, parse
 from tmm_sheets.words import marked, tell
 
@@ -30,7 +32,7 @@ class DerivedTable(Table):
 
     is_: str = Field(alias="is", description=marked('a formula, for example is = "b - a"'))
     unit: str = ""
-    digits: int = 6
+    digits: Annotated[int, whole(0, 17)] = 6
     """significant digits; 0: as many as the number has"""
     source: str | None = None
     """where it comes from, with `$b` and `$b_source`; the formula unless told"""

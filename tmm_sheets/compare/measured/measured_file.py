@@ -186,10 +186,7 @@ def content(path: Path, project: Project) -> bytes:
 
 
 def _decoded(data: bytes, name: str, notes: list[str]) -> str:
-    try:
-        text, note = encodings.decoded(data)
-    except encodings.NotText as e:
-        raise BadInput(Problem(str(e), name, e.line, hint=tell("save it as CSV, UTF-8"))) from None
+    text, note = encodings.decoded(data, name, marked("save it as CSV, UTF-8"))
     if note:
         notes.append(f"{name}: {note}")
     return encodings.cleaned(text)
