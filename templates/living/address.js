@@ -6,7 +6,7 @@ function addressNow(changes = record.motion ? changed() : []) {
   const teaching = !$("lesson").hidden, moving = !$("stage").hidden;
   const place = teaching ? { plan: lesson.told.plan, step: lesson.at + 1, ...(lesson.mode === "show" ? {} : { mode: lesson.mode }) } : moving ? { tab: "motion" } : { sheet: leaf.sheet.sheet };
   const numbers = teaching || moving ? { phi: Number(mod(machine.phi * 180 / Math.PI, 360).toFixed(2)), ...Object.fromEntries(changes.map((g) => [g.name, machine.given[g.name]])) } : {};
-  return `#${new URLSearchParams({ ...place, ...numbers })}`;
+  return `#${new URLSearchParams(/** @type {any} */ ({ ...place, ...numbers }))}`;
 }
 
 // A new place in the history for another view, the same one for another angle or step.
@@ -45,11 +45,24 @@ function readAddress() {
   return true;
 }
 
+// Whether another machine can open the address: that of a page from a file, of one's own machine, or inside another page it cannot.
+const isPublic = () => /^https?:$/.test(location.protocol) && !/^(localhost|127\.|\[::1\])/.test(location.hostname) && parent === window;
+
+// The address to the clipboard; where a phone can open it with a code to scan, until it is clicked.
 async function copyLink() {
   writeAddress();
   history.replaceState(null, "", addressNow());
-  const said = node("div", { id: "toast", role: "status" });
-  try { await navigator.clipboard.writeText(location.href); said.textContent = say("copied"); } catch { said.textContent = location.href; }
+  const said = node("div", { id: "toast", role: "status", onclick: () => said.remove() }), copied = await navigator.clipboard?.writeText(location.href).then(() => say("copied"), () => "");
+  said.append(node("p", {}, copied || location.href), isPublic() ? codeOf(location.href) : node("p", {}, say("no code")));
+  $("toast")?.remove();
   document.body.append(said);
-  setTimeout(() => said.remove(), 2600);
+  if (!isPublic()) setTimeout(() => said.remove(), 5000);
+}
+
+// A text as a QR code.
+function codeOf(text) {
+  const code = QR.generate(text), places = Array.from({ length: code.size ** 2 }, (_, n) => [n % code.size, Math.floor(n / code.size)]), wide = code.size + 8;
+  const found = svgNode("svg", { class: "code", viewBox: `-4 -4 ${wide} ${wide}`, role: "img", "aria-label": "QR" });
+  found.append(svgNode("path", { fill: "#fff", d: `M-4-4h${wide}v${wide}h-${wide}z` }), svgNode("path", { fill: "#000", d: places.filter(([x, y]) => code.get(x, y)).map(([x, y]) => `M${x} ${y}h1.04v1.04h-1.04z`).join("") }));
+  return found;
 }

@@ -26,7 +26,7 @@ function dim() {
   $("hand").replaceChildren();
 }
 
-function ask(id, when = asked.label) {
+function ask(id, when = /** @type {any} */ (asked.label)) {
   if (!stepOf(id)) return;
   pause();
   const moving = !$("stage").hidden;
@@ -88,7 +88,7 @@ function byKeys(svg, elements, marks, pick) {
 // Steps and results, found by their names on the sheet with those of their plans, or by their ids.
 function watchFind() {
   const box = $("find"), drawn = Object.entries(record.steps).filter(([, s]) => record.sheets.some((sheet) => sheet.plans.has(s.plan)));
-  const all = [...drawn.map(([id]) => ({ name: nameOf(id), key: id, id })),
+  const all = [...drawn.map(([id]) => ({ name: nameOf(id), key: id, id, where: undefined })),
     ...Object.entries(record.results).map(([path, { step: id, at: where }]) => ({ name: path, key: path, id, where: where?.[0] }))];
   setAll(box, { placeholder: say("find"), "aria-label": say("find") });
   $("names").replaceChildren(...[...new Set(all.map((one) => one.name))].map((value) => node("option", { value })));

@@ -38,8 +38,8 @@ function* assembles(given) {
 
 // The first place of the mechanism that there is none of, if there is one.
 function notThere(values) {
-  notThere.places ??= Object.entries(record.motion.all.results).filter(([id]) => /^positions\/\S+$/.test(id) && record.steps?.[id]?.kind !== "direction");
-  return notThere.places.find(([, [place]]) => Number.isNaN(values[place]));
+  machine.places ??= Object.entries(record.motion.all.results).filter(([id]) => /^positions\/\S+$/.test(id) && record.steps?.[id]?.kind !== "direction");
+  return machine.places.find(([, [place]]) => Number.isNaN(values[place]));
 }
 
 // From a slider's own number to an end of it: as far as the mechanism goes round all the way there, to a part of it.
@@ -109,9 +109,12 @@ function reset() { edited(machine.given); put({ ...machine.made }); }
 
 const changed = () => record.motion.givens.filter((g) => String(machine.given[g.name]) !== String(g.value));
 
+// Whether the numbers are others than those for which the flywheel gave how the crank runs.
+const isStale = () => changed().length > 0 && record.motion.all.inputs.some((input) => "found" in input);
+
 function showEdits() {
   if (!$("undo")) return;
-  $("stale").hidden = !changed().length || !record.motion.all.inputs.some((input) => "found" in input);
+  $("stale").hidden = !isStale();
   const some = { undo: edits.done.length, redo: edits.undone.length, reset: changed().length, save: changed().length };
   for (const [id, many] of Object.entries(some)) $(id).disabled = !many;
   if (parent !== window) parent.postMessage({ file: projectFile() }, "*");  // of a page that shows this one beside the project file
@@ -121,7 +124,7 @@ function showEdits() {
 function projectFile() {
   const signs = [...record.file], puts = changed().flatMap((g) => (g.places ?? []).map(([from, to], n) => {
     const [unit, by] = g.shown ?? [g.unit.replaceAll("*", "·"), 1], of = (x) => Number(x.toPrecision(12)), number = of([machine.given[g.name]].flat()[n] / by);
-    const times = (x) => of(Number(x.replace(",", ".")) * machine.given[g.name]), old = signs.slice(from, to).join("");
+    const times = (x) => String(of(Number(x.replace(",", ".")) * machine.given[g.name])), old = signs.slice(from, to).join("");
     return { from, to, text: isTable(g) ? old.replace(/[-+]?\d[\d.,]*(?:[eE][-+]?\d+)?/, times) : unit ? `"${number} ${unit}"` : String(number) };
   }));
   for (const { from, to, text } of puts.sort((a, b) => b.from - a.from)) signs.splice(from, to - from, text);
@@ -130,22 +133,21 @@ function projectFile() {
 
 const save = () => download(record.filename, projectFile(), "application/toml");
 
-// Where the mechanism does not assemble: which place there is not, and by how much it is missed.
-function lostWords([id], values) {
-  const gap = gapOf(id, values);
-  return `${plain(say("does not assemble at this angle"))}: ${indexed(stepOf(id).name)}${gap ? `, ${plain(say("gap"))} ${told(gap, "m")}` : ""}`;
+// Crank angles at which the mechanism is, as runs of parts of the turn; looked for once for the same numbers.
+function reached() {
+  if (machine.reach?.given === machine.given) return machine.reach.runs;
+  const runs = [], there = round(LOOKS).map((phi) => !notThere(run(record.motion.all, phi, found())));
+  there.forEach((is, n) => { if (is && n && there[n - 1]) runs.at(-1)[1] = n; else if (is) runs.push([n, n]); });
+  machine.reach = { given: machine.given, runs };
+  return runs;
 }
 
-// By how much the third leg of a group of class III misses what the other two let its corner reach, m; 0 where it does not.
-function gapOfCourses() {
-  const now = found(), { searches, watched } = record.motion, values = run(watched, machine.phi, now);
-  const lost = searches.courses.findIndex((_, n) => Number.isNaN(onCourse(machine.phi, now.courses[n].angles, now.courses[n].places)[0]));
-  if (lost < 0) return 0;
-  const legs = pointed(searches.courses[lost].legs.map((arg) => argumentOf(arg, values, now.given)));
-  if (modesOn(legs).length) return 0; // it can be put together, in another way
-  const missed = Array.from({ length: SCAN }, (_, i) => cis(TURN / SCAN * i)).flatMap((u) => placesOn(u, 0, 1, legs).map((k) => Math.abs(conditions(k, u, legs)[2].f)));
-  const there = missed.filter(Number.isFinite);
-  return there.length ? Math.min(...there) : 0;
+// Where the mechanism does not assemble: which place there is not, by how much it is missed, at which angles it is, also on their slider.
+function lostWords([id], values) {
+  const gap = gapOf(id, values), runs = reached(), turns = round(LOOKS), degrees = (n) => Math.round(mod(turns[n] * 180 / Math.PI, 360)), part = (n) => `${(100 * n / LOOKS).toFixed(1)}%`;
+  const ranges = runs.map((ends) => [...ends].sort((a, b) => senseOfTurn() * (a - b)).map(degrees).join("–") + "°").join(", ");
+  for (const one of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("input.angle"))) one.style.setProperty("--reach", `linear-gradient(90deg, ${runs.map(([a, b]) => `transparent ${part(a)}, var(--after) ${part(a)} ${part(b)}, transparent ${part(b)}`).join(", ") || "transparent, transparent"})`);
+  return `${plain(say("does not assemble at this angle"))}: ${indexed(stepOf(id).name)}${gap ? `, ${plain(say("gap"))} ${told(gap, "m")}` : ""}${ranges && `. ${plain(say("reachable", { ranges }))}`}`;
 }
 
 // Arguments of a step at the present numbers.
@@ -154,12 +156,12 @@ const argumentsNow = (id, values) => stepOf(id).args.map((arg) => {
   return arg.step === undefined ? machine.given[arg.name] ?? arg.given : place ? taken(place, values) : stepOf(arg.step).value;
 });
 
-// By how much two arcs, or an arc and a line, miss each other, m.
+// By how much two arcs, or an arc and a line, miss each other, m; nothing of other constructions.
 function gapOf(id, values) {
   const { rule } = stepOf(id), args = argumentsNow(id, values);
   if (rule.startsWith("arc cuts arc")) { const d = size(sub(args[2], args[0])); return Math.max(d - args[1] - args[3], Math.abs(args[1] - args[3]) - d); }
   if (rule.startsWith("arc cuts line")) return Math.abs(cross(args[3], sub(args[2], args[0]))) - args[1];
-  return gapOfCourses();
+  return 0;
 }
 
 // Which given numbers stand under which heading.

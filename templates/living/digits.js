@@ -10,7 +10,7 @@ function many(x) {
 }
 
 const few = (x) => Number(x) * 2 ** -280;
-const times = (x, y) => (x * y) >> BITS;
+const times = /** @type {Large} */ ((x, y) => (x * y) >> BITS);
 const over = (x, y) => (x << BITS) / y;
 const magnitude = (x) => (x < 0n ? -x : x);
 const split = (x) => { const high = few(x); return [high, few(x - many(high))]; };
@@ -73,7 +73,7 @@ function half(angle, other, sign) {
   return [s / 2, (e + sign * angle[1] + other[1]) / 2];
 }
 
-const sine = ([x, rest]) => Math.sin(x) + rest * Math.cos(x);
+const sine = (/** @type {any[]} */ [x, rest]) => Math.sin(x) + rest * Math.cos(x);
 
 const bits = new DataView(new ArrayBuffer(8));
 
@@ -89,7 +89,7 @@ const atRest = (phi) => 1e-14 + 4 * spacing(phi);
 
 class Cosine {
   constructor(a, b, start) {
-    [this.a, this.b, this.start] = [a, b, start];
+    this.a = a; this.b = b; this.start = start;
     this.touches = magnitude(a - b) < SAME(b);
     this.from = split(start);
     this.turn = split(PI);
@@ -124,7 +124,7 @@ class Cosine {
 // --- gaps of groups between the crank and the frame ---------------------------------------------------------------------
 
 const far = (z) => magnitude(many(z[0])) + magnitude(many(z[1]));
-const alike = (length, other, size) => (magnitude(length - other) <= times(MEANT, size) ? other : length);
+const alike = /** @type {Large} */ ((length, other, size) => (magnitude(length - other) <= times(MEANT, size) ? other : length));
 
 const RECENT = 24, known = {};
 
@@ -141,7 +141,7 @@ function once(name, numbers, make) {
   return made;
 }
 
-function gapOfArcs([l1, ahead, pivot, fixed], plus, minus = 0) {
+function gapOfArcs(/** @type {any[]} */ [l1, ahead, pivot, fixed], plus, minus = 0) {
   return once("arcs", [l1, ahead, pivot, fixed, plus, minus], () => {
     const r = many(l1), x = many(fixed[0]) - many(pivot[0]), y = many(fixed[1]) - many(pivot[1]);
     let length = many(plus) + many(minus);

@@ -37,7 +37,7 @@ function placeHandle(handle, [x, y], degrees, text = `${Math.round(mod(degrees, 
   setAll(handle, { "aria-valuenow": Math.round(mod(degrees, 360)), "aria-valuetext": text });
 }
 
-const degreesOf = ([x, y]) => Math.atan2(y, x) * 180 / Math.PI;
+const degreesOf = (/** @type {any[]} */ [x, y]) => Math.atan2(y, x) * 180 / Math.PI;
 
 // The pin of the crank of a card; gives what puts it to its place.
 function makeGrip(card) {

@@ -107,12 +107,11 @@ function wrongPlace(stop, back) {
 const knownFor = (stop) => [...factorsOf(stop).filter(([, , unit]) => unit).map(([name, value, unit]) => `${name} = ${unit === UNITS().mm ? inMm(value * lessonScale()) : rounded(value, 4)} ${unit}`), ...(stop.kind === "similar" ? [] : [scaleWords(lessonScale(), lesson.told.plan)])];
 
 function askGuess(stop) {
-  const button = (key, act, more = {}) => node("button", { type: "button", class: "chip", onclick: act, ...more }, say(key));
   const question = say(`ask ${stop.kind}`, { point: stop.tail && calledHere(stop.tail), head: calledHere(stop.step), rate: calledHere(stop.step) });
   const asked = node("p", { ".innerHTML": `${question} <span class="hint">${stop.ends && stop.kind !== "rate" ? knownFor(stop).join(", ") : ""}</span>` });
   if (lesson.mode !== "guess") return [node("p", { ".innerHTML": question.replace(/\?.*/u, "?") })]; // in a lecture the hall is asked
-  const check = ASKED[stop.kind] === "sense" ? [[1, "counter-clockwise"], [-1, "clockwise"]].map(([sense, key]) => button(key, () => checkGuess(sense))) : [button("check", () => checkGuess(), { class: "chip main" })];
-  return [asked, node("div", { class: "chips" }, ...check, button("show it", giveUp), node("output", { id: "guessed", class: "count" }), node("span", { class: "count score", id: "score" }, score())), node("div", { id: "verdict", role: "status" }, ...verdict())];
+  const check = ASKED[stop.kind] === "sense" ? [[1, "counter-clockwise"], [-1, "clockwise"]].map(([sense, key]) => button(say(key), () => checkGuess(sense), { class: "chip" })) : [button(say("check"), () => checkGuess(), { class: "chip main" })];
+  return [asked, node("div", { class: "chips" }, ...check, button(say("show it"), giveUp, { class: "chip" }), node("output", { id: "guessed", class: "count" }), node("span", { class: "count score", id: "score" }, score())), node("div", { id: "verdict", role: "status" }, ...verdict())];
 }
 
 const score = () => say("score", { r: guess.right, n: guess.all });

@@ -1,7 +1,7 @@
 // The lesson of a polygon: the mechanism, the plan beside it, above them the vector equation that fills in as vectors are drawn.
 // Each vector is born at the mechanism: the link whose direction is taken glows, turns, slides to its place in the plan.
 
-const lesson = { told: null, at: -1, asks: false, mode: "show", cards: [], grip: () => {} };
+const lesson = { told: null, at: -1, asks: false, mode: "show", cards: [], grip: /** @type {(placed: object) => void} */ (() => {}) };
 
 const stopNow = () => lesson.told.stops[lesson.at];
 const here = (id) => valueOf(id, machine.phi);
@@ -20,7 +20,8 @@ function lessonScale() {
   for (let ten = 1; ; ten *= 10) for (const times of [1, 2, 2.5, 4, 5]) if (widest / (times * ten) <= 320 || ten > 1e9) return mu * times * ten;
 }
 
-const isNothing = (stop) => stop.ends && stop.kind !== "rate" && apart(...stop.ends) / lessonScale() < 0.05;
+const vanishes = ([a, b]) => apart(a, b) / lessonScale() < 0.05;
+const isNothing = (stop) => stop.ends && stop.kind !== "rate" && vanishes(stop.ends);
 // Segments that are measured when a stop is drawn, by their ends.
 const measuredAt = (stop) => (stop.kind === "meet" ? stop.of.map((tail) => [tail, stop.step]) : stop.ends ? [stop.ends] : []);
 const segmentName = (a, b) => `|${calledHere(a)}${/^\d/.test(stepOf(a).name) ? "–" : ""}${calledHere(b)}|`;
@@ -48,19 +49,25 @@ function factorsOf(stop) {
     const [q, b, d] = stop.places, [, , nq, nb, nd] = stop.names.map(indexed);
     return [[segmentName(stop.tail, stop.to), apart(stop.tail, stop.to) / mu, mm, 1], [nq + nd, apart(q, d), m, 1], [nq + nb, apart(q, b), m, -1]];
   }
-  const [a, b] = stop.kind === "close" ? stop.ends : stop.kind === "meet" && stop.of.length ? [stop.of[0], stop.step] : [];
-  return a ? [[segmentName(a, b), apart(a, b) / mu, mm, 1], ["μ", mu, "", 1]] : [];
+  return [];
+}
+
+// The symbol of a vector by its ends, without its bar: of a term, or of what an equation gives.
+function sizeSymbol(tail, head) {
+  const symbol = lesson.terms.get(`${tail} ${head}`)?.symbol ?? (tail === lesson.told.pole && lesson.told.equations.find((one) => one.end === head)?.head);
+  return symbol ? `${symbolMarkup(symbol.replace("̅", ""))} = ` : "";
 }
 
 // The formula of a stop in letters, in numbers, in millimetres: lines of markup.
 function formulaOf(stop) {
   if (stop.kind === "line") return [`${stop.across ? "⟂" : "∥"} ${indexed(stop.name)}`];
+  const measured = ({ meet: 1, close: 1 })[stop.kind] ? measuredAt(stop).filter((ends) => !vanishes(ends)) : [], mu = lessonScale();
+  if (measured.length) return measured.map(([a, b]) => `${sizeSymbol(a, b)}${segmentName(a, b)}·μ = ${product([[apart(a, b) / mu, 1], [mu, 1]], apart(a, b))} ${unitOf(planOf(lesson.told.plan).unit)}`);
   const factors = factorsOf(stop), rate = stop.kind === "rate", value = rate ? Math.abs(here(stop.step)) : Math.abs(factors.reduce((all, [, x, , power]) => all * x ** power, 1));
   if (!factors.length) return [];
   const unit = rate ? unitOf(stop.step) : stop.kind === "similar" ? UNITS().mm : unitOf(planOf(lesson.told.plan).unit), letters = joined(factors.map(([name, , , power]) => [name, power]));
   if (stop.force) return [`${letters} = ${rounded(value, 4)} ${unit}`, sized(value)];
   const numbers = `${product(factors.map(([, x, , power]) => [Math.abs(x), power]), value)} ${unit}`;
-  if (stop.kind === "meet" || stop.kind === "close") return [`${letters} = ${numbers}`];
   const left = rate ? `|${calledHere(stop.step)}|` : stop.rate ? stop.letter && symbolMarkup(stop.letter.replace("̅", "")) : segmentName(...stop.ends);
   return [`${left && `${left} = `}${letters}`, `= ${numbers}`, ...(stop.rate ? [sized(value)] : [])];
 }
@@ -70,13 +77,8 @@ function formulaOf(stop) {
 function sentencesOf(stop) {
   const value = stop.say.includes("{value}") ? shown(here(stop.step), ["number", "angle"].includes(stepOf(stop.step).kind) ? "" : stepOf(stop.step).unit) : "";
   const force = Array.isArray(here(stop.step)) && value ? `${rounded(size(here(stop.step)), 5)} ${unitOf(stop.step)}` : value;
-  const found = [indexed(stop.say.replace("{value}", force))];
-  if (stop.kind === "line" || stop.kind === "rate" || stop.kind === "close") return found;
-  for (const [a, b] of measuredAt(stop)) {
-    if (apart(a, b) / lessonScale() < 0.05) found.push(say("the same point", { name: calledHere(b), other: calledHere(a) }));
-    else found.push(say("segment", { name: segmentName(a, b).slice(1, -1), mm: inMm(apart(a, b)) }));
-  }
-  return found;
+  const found = [indexed(stop.say.replace("{value}", force)), ...(stop.kind === "rate" && here(stop.step) ? [`(${say(here(stop.step) < 0 ? "clockwise" : "counter-clockwise")})`] : [])];
+  return [...found, ...(["rate", "close"].includes(stop.kind) ? [] : measuredAt(stop)).map(([a, b]) => (vanishes([a, b]) ? say("the same point", { name: calledHere(b), other: calledHere(a) }) : say("segment", { name: segmentName(a, b).slice(1, -1), mm: inMm(apart(a, b)) })))];
 }
 
 function tellLesson() {
@@ -87,8 +89,21 @@ function tellLesson() {
   $("lessonNext").disabled = lesson.at === all - 1 && !lesson.asks;
   const head = node("h2", { ".innerHTML": stop ? `<span class="count">${plain(say("step {n} of {all}", { n: lesson.at + 1, all }))}</span> ${plain(stop.title)}${plain(changes)}` : plain(planOf(lesson.told.plan).title + changes) });
   if (lesson.asks) $("told").replaceChildren(head, ...askGuess(stop));
-  else if (!stop) $("told").replaceChildren(head, node("p", {}, say("begin")));
-  else $("told").replaceChildren(head, node("p", { ".innerHTML": sentencesOf(stop).join(" ") }), ...(stop.why ? [node("p", { class: "hint" }, stop.why)] : []), ...verdict());
+  else if (!stop) $("told").replaceChildren(head, node("p", {}, say("begin")), node("p", { class: "hint", ".innerHTML": wordsOfSymbols().join(" ") }));
+  else $("told").replaceChildren(head, node("p", { ".innerHTML": sentencesOf(stop).join(" ") }), ...(stop.why ? [node("p", { class: "hint" }, stop.why, ...elsewhere(stop))] : []), ...verdict());
+}
+
+// What the symbols of the equations stand for, and a millimetre of the plan.
+const wordsOfSymbols = () => [...lesson.told.symbols.map(([symbol, words]) => `${symbolMarkup(symbol)} ${plain(words)}.`),
+  say("a millimetre", { value: `${rounded(lessonScale(), 4)} ${unitOf(planOf(lesson.told.plan).unit)}` })].map((line) => `<span class="word">${line}</span>`);
+
+// The lessons of other plans that gave numbers of a formula, to be opened there.
+function elsewhere(stop) {
+  const given = [stop.rate, ...(stop.twice ? stop.along : [])].filter((id) => id && stepOf(id)?.plan !== lesson.told.plan);
+  return record.lessons.filter(({ plan, stops }) => given.some((id) => stepOf(id).plan === plan) && stops.some(({ step }) => step === stop.rate)).map(({ plan, stops }) => {
+    const names = [stop.rate, ...(stop.twice ? [""] : [])].map((id) => (id ? calledHere(id) : `V<sub>${indexed(stop.name)}</sub>`)).join(", ");
+    return node("button", { type: "button", class: "chip", ".innerHTML": `${names} ← ${plain(planOf(plan).title)}`, onclick: () => openTab("lesson", plan, stops.findIndex(({ step }) => step === stop.rate)) });
+  });
 }
 
 // --- the equation ---------------------------------------------------------------------------------------------------------
@@ -126,9 +141,9 @@ function besideOf(told, views) {
 
 function takeLesson(plan, at = -1) {
   const told = record.lessons.find((one) => one.plan === plan) ?? record.lessons[0], views = liveViews();
-  const order = new Map(told.stops.map((stop, n) => [stop.kind === "line" ? "" : stop.step, n]).reverse()); // when each step is drawn
+  const order = new Map(told.stops.flatMap((stop, n) => (stop.kind === "line" ? [] : [[stop.step, n]])).reverse()); // when each step is drawn
   const terms = new Map(); // colour of a vector and of its term, and when it is drawn, by its ends
-  for (const { sides } of told.equations) sides.flat().forEach(({ tail, head, drawn }, n) => { if (!terms.has(`${tail} ${head}`)) terms.set(`${tail} ${head}`, { colour: n % 6 + 1, drawn }); });
+  for (const { sides } of told.equations) sides.flat().forEach(({ tail, head, drawn, symbol }, n) => { if (!terms.has(`${tail} ${head}`)) terms.set(`${tail} ${head}`, { colour: n % 6 + 1, drawn, symbol }); });
   Object.assign(lesson, { told, order, terms, at: clip(at, -1, told.stops.length - 1) });
   lesson.cards = [besideOf(told, views), views.find((view) => view.plan === told.plan)].map((view) => makeCard(view, (id) => {
     const n = told.stops.findIndex((stop) => stop.step === id && stop.kind !== "line");
@@ -145,21 +160,23 @@ function fitLesson() {
   const rem = parseFloat(getComputedStyle(document.documentElement).fontSize), values = parts(machine.phi);
   for (const card of lesson.cards) {
     const { clientWidth: wide, clientHeight: high } = card.svg, mm = clip(high / 75, rem * 0.19, rem * 0.3);
-    card.room = [Math.max(wide / mm - 30, 20), Math.max(high / mm - 24, 20)];
+    card.room = [Math.max(wide / mm - 30, 20), Math.max(high / mm - 30, 20)];
     card.svg.pixel = 0;
     Object.assign(card, card === lesson.cards[1] && lesson.asks && lesson.mode === "guess" ? roomToGuess() : { shows: null, around: null });
     frameCard(card, [values]);
   }
 }
 
-const placersNow = () => lesson.cards.map((card) => placer(parts(machine.phi), card.shrunk));
+const placersNow = () => lesson.cards.map((card) => placer(parts(machine.phi), card.shrunk, card.shifts));
 
 function drawLesson(t = 1) {
   if ($("lesson").hidden || !lesson.told) return;
-  const values = parts(machine.phi), lost = notThere(values);
+  const values = parts(machine.phi), unknown = isStale() && lesson.told.stops.some(({ step }) => Number.isNaN([here(step)].flat()[0])), lost = notThere(values) ?? (unknown ? [] : undefined);
   $("lesson").classList.toggle("missing", Boolean(lost));
-  if (lost) { drawMissing(lost, values); return; }
+  $("fly").replaceChildren();
+  $("tag").hidden = true;
   fitLesson();
+  if (lost) { drawMissing(lost, values); return; }
   const seen = seenNow(t), drawnAt = (id) => lesson.order.get(id) ?? -1;
   lesson.cards.forEach((card, side) => {
     drawCard(card, values);
@@ -195,7 +212,7 @@ function directionNow(stop, placed) {
 }
 
 // Where the direction of a stop is at the mechanism: two places, mm of its card; nothing where it comes from nowhere there.
-function sourceOf(stop, [mechanism, plan]) {
+function sourceOf(stop, /** @type {any[]} */ [mechanism, plan]) {
   const mark = lesson.cards[0].marks[0], at = (id) => mechanism.point(mark, id);
   if (stop.kind === "similar") return [stop.places[0], stop.places[2]].map(at);
   if (stop.twice) {
@@ -216,21 +233,36 @@ function drawOver(t) {
     const u = directionNow(line, placers[1]), a = place(line.tail), c = (lesson.terms.get(`${line.tail} ${line.step}`) ?? lesson.terms.get(`${line.step} ${line.tail}`))?.colour ?? 0;
     stroke(lesson.cards[1], `direction c${c}`, [sub(a, scale(400, u)), add(a, scale(400, u))]);
   });
-  $("fly").replaceChildren();
-  $("tag").hidden = true;
   if (!stop || lesson.asks) return;
   const source = isNothing(stop) ? null : sourceOf(stop, placers);
   if (source) stroke(lesson.cards[0], "glow", source);
-  const sense = stop.kind === "rate" && t === 1 ? Math.sign(here(stop.step)) : 0;
-  if (sense) {
-    const [a, b] = source, card = lesson.cards[0], centre = placers[0].point(card.marks[0], stop.along[0]), from = sense > 0 ? -0.6 : Math.PI + 0.6;
-    const points = spread(from, from + sense * 2.4, 17).map((angle) => step(centre, 8, cis(angle)));
+  const rate = stop.kind === "rate" ? t === 1 && stop.step : stop.rate, sense = rate ? Math.sign(here(rate)) : 0, card = lesson.cards[0], about = sense && centreOf(stop, rate);
+  if (about) {
+    const centre = placers[0].point(card.marks[0], about), from = sense > 0 ? -0.6 : Math.PI + 0.6, points = spread(from, from + sense * 2.4, 17).map((angle) => step(centre, 8, cis(angle)));
     stroke(card, "turning", points);
     arrow(card, "turning", points[15], points[16]);
-    arrow(card, "turning", b, step(b, 16 * sense, across(straight(sub(b, a)))));
+    letter(card, placesAround(centre, [24, 22]), called(stepOf(rate)), placers[0]);
+  }
+  if (sense && stop.kind === "rate") arrow(card, "turning", source[1], step(source[1], 16 * sense, across(straight(sub(source[1], source[0])))));
+  if (source && stop.twice) {
+    arrow(card, "turning", ...source);
+    letter(card, placesAround(source[1], NAMED), "V", placers[0]);
   }
   if (t < 1 && source) fly(stop, source, placers[1], t);
   if (t === 1) tagAt(stop, placers[1]);
+}
+
+// The hinge of the mechanism that a link with a rate of turning turns about.
+function centreOf(stop, rate) {
+  const gives = record.lessons.flatMap((one) => one.stops).find((one) => one.kind === "rate" && one.step === rate);
+  return gives?.along[0] ?? (stop.twice ? null : stop.along[0]);
+}
+
+// A letter with its index over a card, at the place of some that covers least.
+function letter(card, places, name, placed) {
+  const [x, y] = sub(leastCovered(places, NAMED, obstaclesOf(card, placed)), scale(0.4, NAMED)), text = svgNode("text", { class: "named", x: fixed(x), y: fixed(-y) });
+  text.textContent = name.replace(/\d/g, (digit) => "₀₁₂₃₄₅₆₇₈₉"[digit]);
+  card.over.append(text);
 }
 
 // A place of a card on the page, pixels of the overlay.
@@ -257,25 +289,14 @@ function fly(stop, source, plan, t) {
 // The formula beside its vector, where it covers least.
 function tagAt(stop, plan) {
   const tag = $("tag"), lines = formulaOf(stop), mark = lesson.cards[1].marks[0];
-  tag.hidden = !lines.length || isNothing(stop);
+  Object.assign(tag, { hidden: !lines.length || isNothing(stop), innerHTML: lines.map((line) => `<span>${line}</span>`).join("") });
   if (tag.hidden) return;
-  tag.innerHTML = lines.map((line) => `<span>${line}</span>`).join("");
-  const box = $("fly").getBoundingClientRect(), frame = lesson.cards[1].svg.getBoundingClientRect(), w = tag.offsetWidth, h = tag.offsetHeight;
-  const sides = lesson.told.stops.slice(0, lesson.at + 1).flatMap(measuredAt).map((pair) => pair.map((id) => onPage(1, plan.point(mark, id))))
-    .filter((pair) => pair.flat().every(Number.isFinite));
-  const letters = [...lesson.cards[1].svg.querySelectorAll("text.mark:not([hidden], .undrawn, [visibility=hidden])")].map((one) => one.getBoundingClientRect());
-  const dots = [...sides.flat(), ...letters.map(({ x, y, width, height }) => [x + width / 2 - box.left, y + height / 2 - box.top])];
-  const own = stop.ends ?? [stop.tail ?? stop.of?.[0], stop.kind === "meet" ? stop.step : stop.tail], [a, b] = own.map((id) => onPage(1, plan.point(mark, id))), middle = scale(0.5, add(a, b));
-  const x0 = frame.left - box.left + 6, y0 = frame.top - box.top + 6, x1 = frame.right - box.left - w - 6, y1 = frame.bottom - box.top - h - 6;
-  let best = null;
-  for (let i = 0; i < 24; i++) for (const r of [1, 1.6, 2.4, 3.4]) {
-    const x = clip(middle[0] + r * (w / 2 + 14) * Math.cos(i * Math.PI / 12) - w / 2, x0, Math.max(x0, x1)), y = clip(middle[1] + r * (h / 2 + 22) * Math.sin(i * Math.PI / 12) - h / 2, y0, Math.max(y0, y1));
-    const inside = ([px, py]) => px > x - 8 && px < x + w + 8 && py > y - 14 && py < y + h + 14;
-    let cost = r + size(sub([x + w / 2, y + h / 2], middle)) / 150 + 6 * dots.filter(inside).length;
-    for (const [p, q] of sides) for (let n = 0; n <= 20; n++) if (inside(step(p, n / 20, sub(q, p)))) cost += 1;
-    if (!best || cost < best.cost) best = { cost, x, y };
-  }
-  tag.style.transform = `translate(${best.x}px, ${best.y}px)`;
+  const card = lesson.cards[1], pixel = pixelOf(card.svg), wide = [tag.offsetWidth * pixel, tag.offsetHeight * pixel];
+  const own = stop.ends ?? [stop.tail ?? stop.of?.[0], stop.kind === "meet" ? stop.step : stop.tail], [a, b] = own.map((id) => plan.point(mark, id)), middle = scale(0.5, add(a, b));
+  const known = obstaclesOf(card, plan), along = (axis) => spread(known.view[axis] + wide[axis] / 2 + 1, known.view[axis + 2] - wide[axis] / 2 - 1, 17);
+  const places = along(0).flatMap((x) => along(1).map((y) => [[x, y], size(sub([x, y], middle)) / 16])); // the nearest that is free
+  const [x, y] = leastCovered(places, wide, known), [left, top] = onPage(1, [x - wide[0] / 2, y + wide[1] / 2]);
+  tag.style.transform = `translate(${left}px, ${top}px)`;
 }
 
 // --- going on -------------------------------------------------------------------------------------------------------------
@@ -283,7 +304,7 @@ function tagAt(stop, plan) {
 function showStop(quick = false) {
   const stop = stopNow(), drawn = stop && !lesson.asks && !quick && !still() && !isNothing(stop);
   tellLesson();
-  animate(lesson, drawn ? 1500 : 0, drawLesson);
+  animate(lesson, drawn ? DRAWN_MS : 0, drawLesson);
   writeAddress();
 }
 
@@ -299,7 +320,7 @@ function nextStop() {
   if (lesson.asks) giveUp(); else if (lesson.at < lesson.told.stops.length - 1) goStop(lesson.at + 1);
 }
 
-const STOP_MS = 4000, FRAMES = 12; // a stop is drawn and read; pictures of a film in a second
+const STOP_MS = 4000, DRAWN_MS = 1500; // a stop is drawn and read
 
 // Stops one after another, up to the last.
 function playLesson(on) {
@@ -308,25 +329,6 @@ function playLesson(on) {
   lesson.plays = on ? setInterval(next, STOP_MS) : 0;
   if ($("lessonPlay")) showRunning($("lessonPlay"), on);
   if (on) next();
-}
-
-// The film of a plan as WebM, by the browser itself: the lesson is put on a canvas again and again while it plays.
-async function recordLesson() {
-  const { width, height } = $("lesson").getBoundingClientRect(), part = Math.min(1280 / width, 1), canvas = node("canvas", { width: width * part, height: height * part }), pen = canvas.getContext("2d"), img = new Image();
-  const head = `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" style="font-size: ${getComputedStyle(document.documentElement).fontSize}"><style>${plain(document.querySelector("style").textContent)}</style>`
-    + `<foreignObject width="100%" height="100%"><main xmlns="http://www.w3.org/1999/xhtml" class="${document.body.className}" style="height: 100%; color: var(--ink); background: var(--ground)">`;
-  const recorder = new MediaRecorder(canvas.captureStream(FRAMES), { mimeType: "video/webm", videoBitsPerSecond: 4e6 });
-  recorder.ondataavailable = ({ data }) => download(`${lesson.told.plan}.webm`, data, "video/webm");
-  lesson.at = -1;
-  playLesson(true);
-  recorder.start();
-  while (lesson.plays) {
-    img.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(head + new XMLSerializer().serializeToString($("lesson")) + "</main></foreignObject></svg>")}`;
-    await img.decode();
-    pen.drawImage(img, 0, 0, canvas.width, canvas.height);
-    await new Promise((done) => setTimeout(done, 1000 / FRAMES));
-  }
-  recorder.stop();
 }
 
 // "lecture" or "guess", or out of it again.
@@ -346,14 +348,14 @@ function lessonBar() {
     control("lessonNext", "›", "step", nextStop), control("lessonPlay", "▶", "play", () => playLesson(!lesson.plays), { class: "wide", "data-sign": "▶", "data-key": "play" }), node("output", { class: "count angle" }), angleSlider(),
     choice("which plan", record.lessons.map((one) => [one.plan, planOf(one.plan).title]), "", (plan) => { takeLesson(plan); goStop(-1, true); }, { id: "lessonPlan" }),
     mode("guess"), mode("lecture"), node("button", { type: "button", id: "link", class: "wide", onclick: copyLink }, say("copy link")),
-    button(say("film"), recordLesson, { class: "wide", disabled: !window.MediaRecorder?.isTypeSupported("video/webm"), title: say(window.MediaRecorder?.isTypeSupported("video/webm") ? "film of the plan" : "no film here") }),
+    button(say("film"), recordLesson, { class: "wide", disabled: !window.VideoEncoder, title: say(window.VideoEncoder ? "film of the plan" : "no film here") }),
   ];
 }
 
 function lessonKeys() {
   const back = () => goStop(lesson.at - 1, true), lecture = () => lessonMode("lecture"), guesses = () => lessonMode("guess"), dark = () => document.body.classList.toggle("dark");
   return { " ": nextStop, ArrowRight: nextStop, PageDown: nextStop, ArrowLeft: back, PageUp: back, Home: () => goStop(-1, true), End: () => goStop(Infinity, true),
-    f: lecture, а: lecture, g: guesses, п: guesses, r: () => showStop(), к: () => showStop(), b: dark, и: dark, Enter: () => lesson.asks && checkGuess(),
+    f: lecture, а: lecture, g: guesses, п: guesses, r: () => showStop(), к: () => showStop(), b: dark, и: dark, q: copyLink, й: copyLink, Enter: () => lesson.asks && checkGuess(),
     Escape: () => { if (lesson.mode !== "show") lessonMode(lesson.mode); } };
 }
 
@@ -378,17 +380,14 @@ function openLesson(plan, at = -1) {
 
 // Two arcs that miss each other, or an arc and a line: drawn where the mechanism would stand, with the gap between them.
 function drawMissing([id], values) {
-  $("fly").replaceChildren();
-  $("tag").hidden = true;
-  $("told").innerHTML = `<h2 class="bad">${lostWords([id], values)}</h2>`;
-  fitLesson();
-  const [card] = lesson.cards, placed = placer(values, card.shrunk), mark = card.marks[0], s = stepOf(id), rounds = s.rule.startsWith("arc cuts arc");
+  $("told").innerHTML = `<h2 class="bad">${id ? lostWords([id], values) : say("by the flywheel")}</h2>`;
+  const [card] = lesson.cards, placed = placer(values, card.shrunk), mark = card.marks[0], s = stepOf(id), rounds = s?.rule.startsWith("arc cuts arc");
   drawCard(card, values);
   card.over.replaceChildren();
   lesson.grip(placed);
-  if (!rounds && !s.rule.startsWith("arc cuts line")) return;
+  if (!rounds && !s?.rule.startsWith("arc cuts line")) return;
   const args = argumentsNow(id, values), mm = (x) => x / mark.mu[0] / card.shrunk, [centre, other] = [0, 2].map((n) => placed.point(mark, s.args[n].step));
-  const [radius, second, gap] = [args[1], args[3], gapOf(id, values)].map((x) => (Array.isArray(x) ? x : mm(x)));
+  const [radius, second, gap] = /** @type {any[]} */ ([args[1], args[3], gapOf(id, values)].map((x) => (Array.isArray(x) ? x : mm(x))));
   // From the centre of the first arc to where the other one, or the line, is nearest to it.
   const inside = rounds && size(sub(other, centre)) < Math.abs(radius - second), foot = mul([0, Math.sign(plainCross(args[3], sub(args[2], args[0]))) || 1], args[3]);
   const way = scale(inside && radius < second ? -1 : 1, straight(rounds ? sub(other, centre) : foot));

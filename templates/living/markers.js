@@ -50,8 +50,9 @@ function drawPointers() {
 const angleSlider = () => range("", "crank angle", { class: "scrub angle", min: 0, max: wholeTurn() * 180 / Math.PI, step: 0.1 }, (degrees) => { spin(false); turnTo(degrees * Math.PI / 180); });
 
 function showAngle() {
-  for (const one of document.querySelectorAll(".angle")) {
+  for (const one of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll(".angle"))) {
     if (one.matches("output")) { one.textContent = momentOf(machine.phi); continue; }
+    if (machine.reach?.given !== machine.given) one.style.removeProperty("--reach"); // of other numbers
     Object.assign(one, { value: angleTurned() * 180 / Math.PI, ariaValueText: `${Math.round(angleTurned() * 180 / Math.PI)}°` });
   }
 }

@@ -1,19 +1,19 @@
 // The moves of compass and ruler, one function each, by their names in the record. A point or a direction is [x, y].
 // NaN where the construction does not exist. Why the forms are these is told beside those of Python, construction/arithmetic.py.
 
-const NOWHERE = [NaN, NaN];
+const NOWHERE = /** @type {Z} */ ([NaN, NaN]);
 const SPLIT = 134217729;
 
-const add = (a, b) => [a[0] + b[0], a[1] + b[1]];
-const sub = (a, b) => [a[0] - b[0], a[1] - b[1]];
-const mul = (a, b) => [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]];
-const conj = (a) => [a[0], -a[1]];
-const scale = (s, a) => [s * a[0], s * a[1]];
+const add = /** @type {OfTwo} */ ((a, b) => [a[0] + b[0], a[1] + b[1]]);
+const sub = /** @type {OfTwo} */ ((a, b) => [a[0] - b[0], a[1] - b[1]]);
+const mul = /** @type {OfTwo} */ ((a, b) => [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]);
+const conj = /** @type {OfOne} */ ((a) => [a[0], -a[1]]);
+const scale = /** @type {(s: number, a: number[]) => Z} */ ((s, a) => [s * a[0], s * a[1]]);
 const size = (a) => Math.hypot(a[0], a[1]);
-const cis = (t) => [Math.cos(t), Math.sin(t)];
+const cis = /** @type {(t: number) => Z} */ ((t) => [Math.cos(t), Math.sin(t)]);
 const plainCross = (u, v) => u[0] * v[1] - u[1] * v[0];
 const plainDot = (u, v) => u[0] * v[0] + u[1] * v[1];
-const step = (p, t, u) => [p[0] + t * u[0], p[1] + t * u[1]];
+const step = /** @type {(p: number[], t: number, u: number[]) => Z} */ ((p, t, u) => [p[0] + t * u[0], p[1] + t * u[1]]);
 const mod = (x, y) => { const r = x % y; return r !== 0 && (r < 0) !== (y < 0) ? r + y : r; };
 const clip = (x, low, high) => (x < low ? low : x > high ? high : x);
 
@@ -79,13 +79,13 @@ const momentAbout = (k, { n, at }) => plainCross(sub(at, k), n);
 
 const coefficients = (k, all) => [all.map((c) => c.n[0]), all.map((c) => c.n[1]), all.map((c) => momentAbout(k, c))];
 
-const determinantOf = ([x, y, m]) => m[0] * (x[1] * y[2] - x[2] * y[1]) - m[1] * (x[0] * y[2] - x[2] * y[0]) + m[2] * (x[0] * y[1] - x[1] * y[0]);
+const determinantOf = (/** @type {any[]} */ [x, y, m]) => m[0] * (x[1] * y[2] - x[2] * y[1]) - m[1] * (x[0] * y[2] - x[2] * y[0]) + m[2] * (x[0] * y[1] - x[1] * y[0]);
 
 function correction(k, u, legs) {
   const all = conditions(k, u, legs), [x, y, m] = coefficients(k, all), det = determinantOf([x, y, m]);
   const by = ([a, b]) => -[[1, 2], [2, 0], [0, 1]].reduce((sum, [i, j], n) => sum + (a[i] * b[j] - a[j] * b[i]) * all[n].f, 0)
     / (det === 0 ? NaN : det);
-  return [[by([y, m]), by([m, x])], by([x, y])];
+  return /** @type {[Z, number]} */ ([[by([y, m]), by([m, x])], by([x, y])]);
 }
 
 function extent(legs) {
@@ -98,7 +98,7 @@ function extent(legs) {
   return reach + lengths + away;
 }
 
-const straight = (u) => { const d = size(u); return [u[0] / d, u[1] / d]; };
+const straight = /** @type {OfOne} */ ((u) => { const d = size(u); return [u[0] / d, u[1] / d]; });
 
 function solved(k, u, legs) {
   u = straight(u);
@@ -163,14 +163,8 @@ function onCourse(phi, angles, values) {
 
 const NEAR = 1e-12;
 
-// A cubic piece of a curve, between two of its points.
-function cubicPiece({ y, left, right }, k, h, s) {
-  const r = 1 - s;
-  return r * r * (y[k] * (1 + 2 * s) + h * s * left[k]) + s * s * (y[k + 1] * (1 + 2 * r) - h * r * right[k]);
-}
-
 function read(curve, t, side, period) {
-  const { x, y, law } = curve, last = x[x.length - 1];
+  const { x, y, left, right, law } = curve, last = x[x.length - 1];
   if (period) {
     t = mod(t - x[0], period) + x[0];
     if (side < 0) t = t - x[0] < NEAR ? last : t;
@@ -181,14 +175,8 @@ function read(curve, t, side, period) {
   if (side >= 0 ? t >= last : t > last) return y[y.length - 1];
   if (side >= 0 ? t < x[0] : t <= x[0]) return y[0];
   const k = clip((side < 0 ? before(x, t) : upTo(x, t)) - 1, 0, x.length - 2), h = x[k + 1] - x[k];
-  const s = clip((t - x[k]) / (h > 0 ? h : 1), 0, 1);
-  return law === "straight" ? y[k] + s * (y[k + 1] - y[k]) : cubicPiece(curve, k, h, s);
-}
-
-function ordinateOf(curve, at) {
-  if (Number.isNaN(at)) return NaN;
-  const { x, y, law } = curve, k = clip(upTo(x, at) - 1, 0, x.length - 2), h = x[k + 1] - x[k], t = (at - x[k]) / h;
-  return law === "straight" ? (1 - t) * y[k] + t * y[k + 1] : cubicPiece(curve, k, h, t);
+  const s = clip((t - x[k]) / (h > 0 ? h : 1), 0, 1), r = 1 - s;
+  return law === "straight" ? y[k] + s * (y[k + 1] - y[k]) : r * r * (y[k] * (1 + 2 * s) + h * s * left[k]) + s * s * (y[k + 1] * (1 + 2 * r) - h * r * right[k]);
 }
 
 function swung(u, sense, low, swing) {
@@ -275,12 +263,7 @@ const PRIMITIVES = {
   "fraction of a swing": swung,
   "ordinate of a diagram": (curve, at, ahead) => read(curve, at, ahead < 0 ? -1 : 1, 0),
   "ordinate of a periodic diagram": (curve, at, turns, side) => read(curve, at, Math.trunc(side), 2 * Math.PI * turns),
-  "ordinate of a curve": ordinateOf,
   "value or its limit": (value, limit) => (Number.isNaN(limit) ? value : limit),
-  "angle turned": (start, end, sense) => mod(sense * (end - start), 2 * Math.PI),
-  "angle turned to a point": (centre, pin, start, sense) =>
-    mod(sense * (Math.atan2(pin[1] - centre[1], pin[0] - centre[0]) - start), 2 * Math.PI),
-  "within the first turn": (phi, turn) => (phi > turn * (1 + 1e-12) ? mod(phi - 1e-12, turn) + 1e-12 : phi),
   "round to a step": (x, by) => (Number.isFinite(x / by) ? Number((Math.floor(x / by + 0.5) * by).toPrecision(12)) : NaN),
   "15 digits": (x) => Number(x.toPrecision(15)),
 };

@@ -1,4 +1,4 @@
-// What searches find for given numbers: ways of assembly, where the cycle begins, strokes of the loads, how the crank runs. On the page's own program.
+// What searches find for given numbers: ways of assembly, where the cycle begins, strokes of the loads. On the page's own program.
 
 // One set of given numbers with what is found for it; the program is run without what comes later.
 function searched(given) {
@@ -11,7 +11,6 @@ function searched(given) {
   const asked = (arg) => (phi) => argumentOf(arg, at(phi), given);
   if (m.searches.dead) [found.start, found.stroke] = startOf(m.searches.dead, asked, given);
   for (const load of m.searches.loads) found.loads.push(motionOf(load, asked, found.start));
-  found.wheel = wheelOf(found);
   return found;
 }
 
@@ -59,9 +58,9 @@ function motionOf(load, asked, start) {
     const t = [...new Set([...spread(0, TURN, SWEEP + 1), ...runs.map((r) => r.begin)])].sort((a, b) => a - b), angles = unwrapped(t.map(along));
     const turns = Math.round((angles.at(-1) - angles[0]) / TURN);
     if (turns || !runs.some((r) => r.sense)) {
-      const cut = runs.flatMap((r) => (r.end > TURN + NEAR ? [{ ...r, end: TURN }, { begin: 0, end: r.end - TURN, sense: r.sense, stroke: 0 }] : [r]));
+      const cut = runs.flatMap((r) => (r.end > TURN + NEAR ? [{ ...r, end: TURN }, { begin: 0, end: r.end - TURN, sense: r.sense, stroke: 0, working: false }] : [r]));
       const whole = cut.map((r) => ({ ...r, working: turns > 0 })).sort((a, b) => a.begin - b.begin);
-      return actingOn(load, { runs: overCycle(whole, period, load.first), low: NaN, long: NaN, way: turns >= 0 ? 1 : -1, endless: true });
+      return actingOn(load, { runs: overCycle(whole, period, load.first), low: NaN, long: NaN, way: turns >= 0 ? 1 : -1 });
     }
     ways = runs.map((r) => angles[t.indexOf(r.begin)]);
   }

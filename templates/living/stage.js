@@ -21,7 +21,7 @@ function turnedBy(frame, [x, y], shrunk = 1) {
 }
 
 // Anchors of a mark and its direction on the sheet, mm, y upwards; distances are so many times smaller than there.
-function placer(values, shrunk = 1) {
+function placer(values, shrunk = 1, shifts = null) {
   const number = (id) => taken(record.motion.all.results[id], values);
   const direction = (mark) => {
     if (!mark.along.length) return [1, 0];
@@ -38,11 +38,11 @@ function placer(values, shrunk = 1) {
     if (other === true) return add(a, mul([x / shrunk, y / shrunk], u)); // a length of the mechanism
     return add(add(other ? step(a, share, sub(point(mark, other), a)) : a, mul([x, y], u)), [dx, dy]);
   };
-  return { direction, point, at, shrunk };
+  return { direction, point, at, shrunk, shifts };
 }
 
 function geometryOf(mark, placed) {
-  const u = placed.direction(mark), points = mark.at.map((one) => placed.at(mark, one, u));
+  const u = placed.direction(mark), shift = placed.shifts?.get(mark.lettering), points = mark.at.map((one) => (shift ? add(placed.at(mark, one, u), shift) : placed.at(mark, one, u)));
   if (mark.kind === "text") return { text: { ...mark, at: points[0], angle: 0 } };
   const round = { centre: points[0], radius: mark.reach ? size(sub(placed.point(mark, mark.reach[1]), placed.point(mark, mark.reach[0]))) : mark.radius };
   if (mark.kind === "circle") return { circle: round };
@@ -53,19 +53,20 @@ function geometryOf(mark, placed) {
 const defined = (g) => pointsOf(g).every((z) => Number.isFinite(z[0]) && Number.isFinite(z[1]));
 
 function makeCard(live, pick = ask) {
-  const svg = svgNode("svg", { role: "group", tabindex: 0, "aria-label": live.view }), marks = live.marks.filter((m) => m.kind !== "path"), paths = live.marks.filter((m) => m.kind === "path");
-  svg.innerHTML = `<g class="paths"></g><g class="marks">${marks.map((mark) => markSvg(mark.style, { [mark.kind]: { ...mark, string: mark.string?.replace(`(${live.position})`, "") } })).join("")}</g><g class="over"></g>`;
   // What is said of the position that it is drawn for on the sheet does not hold in motion.
+  const svg = svgNode("svg", { role: "group", tabindex: 0, "aria-label": live.view }), paths = live.marks.filter((m) => m.kind === "path");
+  const marks = live.marks.filter((m) => m.kind !== "path").map((m) => (m.string ? { ...m, string: m.string.replace(`(${live.position})`, "") } : m));
+  svg.innerHTML = `<g class="paths"></g><g class="marks">${marks.map((mark) => markSvg(mark.style, { [mark.kind]: mark })).join("")}</g><g class="over"></g>`;
   const position = say("position {label}", { label: live.position }), from = live.view.toLowerCase().indexOf(position.toLowerCase());
   const name = from < 0 ? live.view : live.view.slice(0, from).replace(/[\s,(]+$/, "");
-  const caption = node("figcaption", {}, name), card = { live, name, svg, marks, paths, caption, hidden: marks.map(() => false), drawn: marks.map(() => ""), seen: false, figure: node("figure", { class: "card" }, caption, svg) };
+  const caption = node("figcaption", {}, name), card = { live, name, svg, marks, paths, caption, shifts: new Map(), left: new Set(), letterings: letteringsOf(marks), hidden: marks.map(() => false), drawn: marks.map(() => ""), seen: false, figure: node("figure", { class: "card" }, caption, svg) };
   card.ends = [...new Map(marks.filter((m) => m.kind !== "text" && m.role !== "text").flatMap((m) => m.at.map(([id]) => [id, m])))].map(([id, m]) => [m, id]);
   const elements = [...svg.querySelectorAll(".marks > *")], sources = marks.map((mark) => live.sheet.marks.find((m) => m.id === mark.id));
   Object.assign(card, { elements, sources, over: svg.querySelector(".over") });
   byKeys(svg, card.elements, card.sources.map((one) => one && { ...one, position: "" }), (mark) => pick(mark.step));
   svg.addEventListener("click", (event) => {
     if (event.target.closest(".handle")) return;
-    const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse()), placed = placer(parts(machine.phi), card.shrunk);
+    const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse()), placed = placer(parts(machine.phi), card.shrunk, card.shifts);
     const there = marks.map((mark, n) => ({ ...mark, step: card.sources[n]?.step, geometry: geometryOf(mark, placed) }));
     const shown = outlines(there).filter(({ n }) => defined(there[n].geometry) && !card.elements[n].matches("[hidden], .undrawn"));
     const n = nearest(shown, there, [x, -y], HIT / svg.getScreenCTM().a);
@@ -82,8 +83,8 @@ function heldBy(card, placed) {
 
 // A polygon of forces or a group keeps to the middle of its card; a plan with a pole keeps its pole.
 function centre(card, placed) {
-  const [x0, y0, x1, y1] = extentOf(heldBy(card, placed)), [w, h] = add(roomOf(card), [30, 24]);
-  if (x0 <= x1) lookAt(card.svg, [(x0 + x1 - w) / 2, -(y0 + y1 + h) / 2, w, h]);
+  const [x0, y0, x1, y1] = extentOf(heldBy(card, placed)), head = card.room ? 6 : 0, [w, h] = add(roomOf(card), [30, 24 + head]); // for its caption
+  if (x0 <= x1) lookAt(card.svg, [(x0 + x1 - w) / 2, -(y0 + y1 + h + head) / 2, w, h]);
 }
 
 function scaleWords(mu, plan) {
@@ -112,26 +113,7 @@ function takeTurn() {
   for (const card of stage.cards) card.framed = false;
 }
 
-// Letters of a plan that would lie on others for much of the turn are left out, each with all of its signs.
-function chooseLetters(card, turn) {
-  const letters = card.marks.map((mark, n) => ({ n, lettering: mark.role === "text" && mark.at && mark.lettering })).filter((one) => one.lettering);
-  const letterings = [...new Set(letters.map((one) => one.lettering))].map((one) => letters.filter((sign) => sign.lettering === one).map(({ n }) => n));
-  const many = Math.min(turn.length, MOMENTS), moments = Array.from({ length: many }, (_, i) => placer(turn[Math.floor(i * turn.length / many)], card.shrunk));
-  const all = letterings.map((signs) => ({ signs, boxes: moments.map((placed) => extentOf(signs.flatMap((n) => {
-    const mark = card.marks[n], g = geometryOf(mark, placed);
-    if (g.text) { const [x, y] = g.text.at; return [[x, y], [x + 0.55 * mark.height * mark.string.length, y + mark.height]]; }
-    return pointsOf(g);
-  }))) }));
-  const apart = (a, b) => a[0] > b[2] || b[0] > a[2] || a[1] > b[3] || b[1] > a[3], kept = [];
-  card.left = new Set();
-  for (const one of all.sort((a, b) => a.signs.length - b.signs.length)) { // short ones are those of points
-    const covered = one.boxes.filter((box, i) => kept.some((other) => !apart(box, other.boxes[i]))).length;
-    if (covered > CROWDED * many) one.signs.forEach((n) => card.left.add(n)); else kept.push(one);
-  }
-  card.elements.forEach((element, n) => element.toggleAttribute("hidden", card.left.has(n)));
-}
-
-const MOMENTS = 24, CROWDED = 0.2, COMMON = 1.5, REST_MS = 160;
+const COMMON = 1.5, REST_MS = 160;
 
 // The scale of a card, that of its common angles; the room of everything that moves in it then, paths of points.
 function frameCard(card, turn = stage.turn) {
@@ -139,8 +121,8 @@ function frameCard(card, turn = stage.turn) {
   card.framed = true;
   card.centred = card.room || card.live.plan !== "positions" && planOf(card.live.plan).pole === undefined;
   card.usual = card.shrunk = (card.centred ? Math.min(Math.max(...sizes), common) : shrinking(card, usual)) || 1;
-  chooseLetters(card, turn);
   if (card.room) return;
+  chooseLetters(card, turn);
   const moving = card.marks.filter((mark) => mark.role !== "construction" && mark.role !== "text"), placers = (card.centred ? [] : usual).map((values) => placer(values, card.shrunk));
   card.box = boundsOf(placers.flatMap((placed) => moving.map((mark) => ({ geometry: geometryOf(mark, placed) }))).filter(({ geometry }) => defined(geometry)));
   card.svg.querySelector(".paths").innerHTML = card.paths.map((path) => {
@@ -165,8 +147,9 @@ function keepInSight(card, values) {
 function drawCard(card, values) {
   if (!card.framed) frameCard(card);
   if (!card.room) keepInSight(card, values);
-  const placed = placer(values, card.shrunk);
+  const placed = placer(values, card.shrunk, card.shifts);
   if (card.centred || card.off) centre(card, placed);
+  if (card.room) placeLetters(card, placed, values);
   card.marks.forEach((mark, n) => {
     if (card.left.has(n)) return;
     const g = geometryOf(mark, placed), element = card.elements[n], there = defined(g);
@@ -231,11 +214,6 @@ function fitCards() {
   const best = Math.max(...wide), fits = best >= LEAST * rem;
   place.style.setProperty("--columns", fits ? `repeat(${wide.indexOf(best) + 1}, 1fr)` : "");
   place.style.setProperty("--high", fits ? `${best * SHAPE}px` : "");
-  resized();
-}
-
-// Cards of another size are drawn anew.
-function resized() {
   for (const card of stage.cards) card.svg.pixel = 0;
   drawStage();
 }
@@ -251,7 +229,7 @@ function openStage() {
     }, { root: $("stage") });
     for (const card of stage.cards) {
       watch.observe(card.figure);
-      card.figure.append(control("", "⤢", "this card large", () => { card.figure.classList.toggle("large"); card.figure.scrollIntoView(); resized(); }, { class: "enlarge" }));
+      card.figure.append(control("", "⤢", "this card large", () => { card.figure.classList.toggle("large"); card.figure.scrollIntoView(); fitCards(); }, { class: "enlarge" }));
     }
     new ResizeObserver(fitCards).observe($("stage"));
     const grip = makeGrip(stage.cards[0]), points = makePoints(stage.cards[0]);

@@ -15,7 +15,7 @@ function toldIn(told, when) {
 
 // Values in the panel follow the crank.
 function tellNow() {
-  for (const one of document.querySelectorAll("#panel [data-step]")) one.textContent = shown(valueOf(one.dataset.step, machine.phi), stepOf(one.dataset.step).unit);
+  for (const one of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("#panel [data-step]"))) one.textContent = shown(valueOf(one.dataset.step, machine.phi), stepOf(one.dataset.step).unit);
   for (const one of document.querySelectorAll("#panel [data-moment]")) one.textContent = momentOf(machine.phi);
 }
 

@@ -1,9 +1,9 @@
 // Checking: a drawing over ours with a slider between, the first wrong step, places to zoom to; a group as a table.
 
 import { $, bytesOf, button, download, dropZone, node, picture, say } from "./dom.js";
-import { aborted, ask, latest } from "./door.js";
+import { ask, latest } from "./door.js";
 import { project } from "./project.js";
-import { progress } from "./take.js";
+import { working } from "./take.js";
 import { framed } from "./zoom.js";
 
 const work = latest();
@@ -12,13 +12,7 @@ const ACCEPT = ".jpg,.jpeg,.png,.pdf,.dxf,.csv";
 export function startCheck() {
   const which = node("select", { id: "which", "aria-label": say("which sheet") });
   const found = node("div", { id: "found" });
-  const run = async (door, files, show) => {
-    const signal = work.begin();
-    progress(found, say("begins"), work);
-    try {
-      show(found, await ask(door, { text: project.text, name: project.name, sheet: which.value }, { signal, files, heard: (m) => progress(found, m.say, work) }));
-    } catch (error) { found.replaceChildren(node("p", { class: aborted(error) ? "hint" : "bad" }, aborted(error) ? say("stopped") : error.message)); }
-  };
+  const run = (door, files, show) => working(found, work, async (how) => show(found, await ask(door, { text: project.text, name: project.name, sheet: which.value }, { ...how, files })));
   $("check").replaceChildren(node("div", { class: "bar" }, which, dropZone(say("drop a drawing"), ACCEPT, ([file]) => run("compare", [file], showFound)),
     dropZone(say("drop a folder"), "", (files) => run("group", files, showGroup), true)), found);
 }

@@ -1,6 +1,6 @@
 // Words and nodes.
 
-export const $ = (id) => document.getElementById(id);
+export const $ = /** @type {(id: string) => any} */ ((id) => document.getElementById(id));
 
 let words = {};
 export const speak = (found) => { words = found; };

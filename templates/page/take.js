@@ -23,22 +23,26 @@ export function startTake() {
     node("div", { class: "bar" }, node("button", { type: "submit", class: "main" }, say("make")), button(say("project file alone"), () => download(`${project.name || "project"}.toml`, project.text, "application/toml"), { class: "chip" })), said);
   form.onsubmit = async (event) => {
     event.preventDefault();
-    const data = new FormData(form), names = Object.fromEntries(NAMES.map((key) => [key, data.get(key).trim()])), signal = work.begin();
+    const data = new FormData(form), names = Object.fromEntries(NAMES.map((key) => [key, data.get(key).trim()]));
     localStorage.setItem("names", JSON.stringify(names));
-    progress(said, say("begins"), work);
-    try {
-      const made = await ask("take", { text: project.text, name: project.name, wanted: data.getAll("wanted").join(","), ...names }, { signal, heard: (m) => progress(said, m.say, work) });
+    await working(said, work, async (how) => {
+      const made = await ask("take", { text: project.text, name: project.name, wanted: data.getAll("wanted").join(","), ...names }, how);
       const bytes = bytesOf(made.data), again = () => download(made.name, bytes);
       again();
       said.replaceChildren(node("p", { class: "good" }, say("made {n} files", { n: made.files.length }), " ", button(made.name, again, { class: "chip" })),
         ...made.problems.map((line) => node("p", { class: "bad" }, line)), node("ul", { class: "files" }, ...made.files.map((file) => node("li", {}, file))));
-    } catch (error) { said.replaceChildren(node("p", { class: aborted(error) ? "hint" : "bad" }, aborted(error) ? say("stopped") : error.message)); }
+    });
   };
   $("take").replaceChildren(form);
 }
 
-// What is being done, and a way to stop it.
-export function progress(place, text, running) {
-  if (place.querySelector(".now")) { place.querySelector(".now").textContent = text; return; }
-  place.replaceChildren(node("p", { class: "progress" }, node("span", { class: "now" }, text), button(say("stop"), () => running.stop(), { class: "chip" })));
+// Work of which is told while it is done; it can be stopped; what went wrong is told in its place.
+export async function working(place, running, act) {
+  const signal = running.begin(), now = node("span", { class: "now" });
+  const heard = ({ say: text }) => {
+    now.textContent = text;
+    if (!now.isConnected) place.replaceChildren(node("p", { class: "progress" }, now, button(say("stop"), () => running.stop(), { class: "chip" })));
+  };
+  heard({ say: say("begins") });
+  try { await act({ signal, heard }); } catch (error) { place.replaceChildren(node("p", { class: aborted(error) ? "hint" : "bad" }, aborted(error) ? say("stopped") : error.message)); }
 }

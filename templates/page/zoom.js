@@ -5,7 +5,7 @@ import { animate, button, node, say, still } from "./dom.js";
 const CLOSEST = 12, WIDEST = 3, FURTHER = 4 / 3; // of what is seen: units, and times the whole; how much a button enlarges
 
 // `show` is given the box and how many units a pixel is; `click` where it was, and the same.
-export function zoomable(frame, show, click = () => {}) {
+export function zoomable(frame, show, click = /** @type {(...told: any[]) => void} */ (() => {})) {
   const box = { x: 0, y: 0, w: 1, h: 1 }, fingers = new Map(), state = { whole: [0, 0, 1, 1], fitted: true, travelled: 0 };
   const pixel = () => { const { width, height } = frame.getBoundingClientRect(); return Math.max(box.w / width, box.h / height); };
   const place = ({ clientX, clientY }) => {
@@ -21,7 +21,7 @@ export function zoomable(frame, show, click = () => {}) {
       if (Number.isFinite(pixel())) show(box, pixel());
     });
   };
-  const by = (times, [x, y] = [box.x + box.w / 2, box.y + box.h / 2]) => {
+  const by = (times, [x, y] = /** @type {number[]} */ ([box.x + box.w / 2, box.y + box.h / 2])) => {
     const s = Math.min(Math.max(box.w / times, CLOSEST), WIDEST * state.whole[2]) / box.w;
     go([x + (box.x - x) * s, y + (box.y - y) * s, box.w * s, box.h * s], true);
   };

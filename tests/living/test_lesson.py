@@ -1,5 +1,8 @@
 """The lesson: order of its stops, its equations as the note has them, its numbers those of the record, its state in the address."""
 
+from base64 import b64decode
+
+import numpy as np
 import pytest
 
 from tests.few import seldom
@@ -156,8 +159,8 @@ def test_marks_by_keyboard(tmp_path):
 
 
 @javascript.browser
-def test_a_lesson_plays_and_is_filmed(tmp_path):
-    """Up to its last stop, by itself; the film is one of the browser, and as long as that."""
+def test_a_lesson_plays(tmp_path):
+    """Up to its last stop, by itself."""
     path = tmp_path / "page.html"
     path.write_text(made("lugansk/shaper").replace("const STOP_MS = 4000", "const STOP_MS = 300"), encoding="utf-8")
     with browser(tmp_path / "profile") as page:
@@ -165,8 +168,101 @@ def test_a_lesson_plays_and_is_filmed(tmp_path):
         page.until("!!document.querySelector('html[data-ready]')")
         page.now("playLesson(true)")
         page.until("!lesson.plays && lesson.at === lesson.told.stops.length - 1")
-        page.now("window.kept = []; HTMLAnchorElement.prototype.click = function () { kept.push(this.download); }")
+
+
+KEPT = """(() => {
+  window.kept = [];
+  URL.createObjectURL = (blob) => { const reader = new FileReader(); reader.onload = () => kept.push(reader.result.split(",")[1]);
+    reader.readAsDataURL(blob); return "#"; };
+  HTMLAnchorElement.prototype.click = function () { window.filmed = this.download; };
+})()"""
+
+
+@javascript.browser
+def test_the_film_is_as_long_as_the_lesson(tmp_path):
+    """However slowly its pictures are made: read by another program, four seconds a stop, with what is seen at the end of each."""
+    cv2 = pytest.importorskip("cv2")
+    path, film = tmp_path / "page.html", tmp_path / "film.webm"
+    path.write_text(made("lugansk/shaper").replace("FRAMES = 12", "FRAMES = 2"), encoding="utf-8")
+    with browser(tmp_path / "profile") as page:
+        page.open(f"{path.as_uri()}#plan=force-1&step=1&phi=126")
+        page.until("!!document.querySelector('html[data-ready]')")
+        page.now(KEPT)
+        stops = page.now("lesson.told.stops.length")
         page.now("void recordLesson()")
-        page.until("kept.length", seconds=60)
-        assert page.now("kept[0]") == "velocities.webm"
-        assert page.now("lesson.at === lesson.told.stops.length - 1")
+        film.write_bytes(b64decode(page.until("kept[0]")))
+        assert page.now("filmed") == "force-1.webm"
+        assert not page.now("document.body.inert")
+        assert page.said == []
+    video, times = cv2.VideoCapture(str(film)), []
+    while video.read()[0]:
+        times.append(video.get(cv2.CAP_PROP_POS_MSEC))
+    assert times[0] == 0
+    assert times == sorted(set(times))
+    assert times[-1] == pytest.approx(4000 * stops - 500, abs=1)
+
+
+@javascript.browser
+def test_the_code_of_an_address(tmp_path):
+    """Read by another program: the address as it is; a page from a file has none that a phone could open."""
+    cv2, path = pytest.importorskip("cv2"), tmp_path / "page.html"
+    path.write_text(made("lugansk/shaper"), encoding="utf-8")
+    address = "https://example.org/tmm/shaper.html#plan=accelerations&step=5&phi=126&crank.length=0.082"
+    with browser(tmp_path / "profile") as page:
+        page.open(f"{path.as_uri()}#plan=accelerations&step=5&phi=126")
+        page.until("!!document.querySelector('html[data-ready]')")
+        page.now("copyLink()")
+        assert page.now("$('toast').querySelector('.code')") is None
+        page.now(f"document.body.append(codeOf({address!r}))")
+        page.now("document.body.lastChild.style = 'position: fixed; inset: 0; width: 400px; height: 400px; z-index: 9'")
+        picture = np.frombuffer(b64decode(page("Page.captureScreenshot", format="png")["data"]), np.uint8)
+    assert cv2.QRCodeDetector().detectAndDecode(cv2.imdecode(picture, 1)[:400, :400])[0] == address
+
+
+COVERED = """(() => {
+  const said = [];
+  for (const { plan } of record.lessons) {
+    openTab("lesson", plan, 99);
+    for (const phi of round(6)) {
+      turn(phi);
+      const card = lesson.cards[1], placed = placer(parts(phi), card.shrunk, card.shifts);
+      const there = card.letterings.map((signs) => boxOf(card, signs, placed)).filter((box) => box.every(Number.isFinite));
+      const pairs = there.flatMap((a, n) => there.slice(n + 1).map((b) => !areApart(a, b)));
+      said.push(pairs.filter(Boolean).length / Math.max(there.length, 1));
+    }
+  }
+  return said;
+})()"""
+
+
+@javascript.browser
+@pytest.mark.parametrize("name", ["lugansk/shaper", *(seldom(name) for name in ("lugansk/engine", "sixbar/1:1", "loom"))])
+def test_letters_of_a_lesson_are_apart(name, tmp_path):
+    """At any angle of the turn: of a plan seldom two letterings lie upon each other, though all are there."""
+    path = tmp_path / "page.html"
+    path.write_text(made(name), encoding="utf-8")
+    with browser(tmp_path / "profile") as page:
+        page.open(path.as_uri())
+        page.until("!!document.querySelector('html[data-ready]')")
+        shares = page.now(COVERED)
+        assert np.mean(shares) < 0.05
+        assert page.now("lesson.cards[1].elements.filter((one) => one.hasAttribute('hidden')).length") == 0
+
+
+@javascript.browser
+@pytest.mark.parametrize("rod", [0.012, 0.03])
+def test_reachable_angles(rod, tmp_path):
+    """Where the rod reaches its guide, by places of the rocker's end written down here; nothing is told if it does all round."""
+    path = tmp_path / "page.html"
+    path.write_text(made("sixbar/1:1"), encoding="utf-8")
+    with browser(tmp_path / "profile") as page:
+        page.open(f"{path.as_uri()}#plan=velocities&step=3&phi=126")
+        page.until("!!document.querySelector('html[data-ready]')")
+        page.now(f"setGiven('group[1].length', {rod})")
+        angles, runs = page.now("[round(LOOKS), reached()]")
+        pin = 0.09 * np.exp(1j * np.asarray(angles)) + 0.187j  # from the rocker's pivot
+        there = np.abs(0.35 * pin.imag / np.abs(pin) - 0.187 - 0.14) <= rod
+        assert [any(a <= n <= b for a, b in runs) for n in range(len(angles))] == there.tolist()
+        assert page.now("drawLesson() ?? $('told').textContent.includes('Достижимые')") == (rod < 0.02)
+        assert bool(page.now("document.querySelector('input.angle').style.getPropertyValue('--reach')")) == (rod < 0.02)
+        assert page.said == []

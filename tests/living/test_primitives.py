@@ -6,12 +6,9 @@ import pytest
 from tests.few import few
 from tests.living import javascript
 from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.function import told
 from tmm_sheets.mechanism.groups import dead_centres, three_legs
-from tmm_sheets.methods.flywheel import works
-from tmm_sheets.methods.integration import ordinate_of
-from tmm_sheets.methods.linkage import cycle, forces, loads, numbering, synthesis
+from tmm_sheets.methods.linkage import forces, loads, synthesis
 
 RUN = javascript.modules("digits", "primitives") + """
 const result = ({ name, rows }) => rows.map((args) => PRIMITIVES[name](...args));
@@ -53,9 +50,6 @@ ELEMENTWISE = {
     "tangent": (ar.tangent_point, ("point", "point", "length", "side")),
     "tangent direction": (ar.tangent_direction, ("point", "point", "length", "side", "length", "length")),
     "value or its limit": (forces.in_limit, ("number", "known")),
-    "angle turned": (np.vectorize(numbering._turned), ("angle", "angle", "side")),
-    "angle turned to a point": (cycle._turned, ("point", "point", "angle", "side")),
-    "within the first turn": (works._within, ("angle", "length")),
     "fraction of a swing": (loads._swung, ("direction", "side", "angle", "length")),
     "unit": (np.vectorize(ar.unit), ("angle",)),
     "round to a step": (np.vectorize(synthesis._nearest), ("number", "length")),
@@ -225,12 +219,3 @@ def test_diagrams(table, smooth, n, tmp_path):
             "plus": PLUS, "at": told(at), "ahead": told(ahead)}
     for found, values in zip(javascript.run(run, data, tmp_path), own, strict=True):
         close(found, values, np.ones(len(at)))
-
-
-def test_curve(n, tmp_path):
-    rng = np.random.default_rng(9)
-    x = np.sort(rng.uniform(0, 1, 12))
-    curve = Curve(x, rng.normal(size=12), rng.normal(size=11), rng.normal(size=11))
-    at = rng.uniform(x[0], x[-1], n)
-    found = javascript.run(RUN, {"name": "ordinate of a curve", "rows": [[told(curve), t] for t in at.tolist()]}, tmp_path)
-    close(found, ordinate_of(curve, at), np.ones(n))

@@ -82,7 +82,7 @@ def test_a_day_at_the_page(tmp_path):
         page.now(typed("schema = 1", "schema = 1  # again"))
         page.until("!document.getElementById('waits').hidden")
         page.until("document.getElementById('waits').hidden")
-        page.until("window.tmm?.ready && lesson.told?.plan === 'velocities' && lesson.at === 2", inside=True)
+        page.until("window.tmm?.ready && location.hash.includes('plan=velocities&step=3')", inside=True)
         page.now(pressed("take"))
         page.now("history.back()")
         page.until("document.body.dataset.tab === 'turn'")

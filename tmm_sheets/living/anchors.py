@@ -46,7 +46,7 @@ def hung(record: Mapping[str, Any], sheet: Mapping[str, Any], known: Mapping[str
         plan = plans.get(frame["plan"])
         if plan is None or not plan["positions"] or not any(key in known for key in plan["steps"]):
             continue
-        marks = [m for m in sheet["marks"] if m.get("frame") == frame["id"]]
+        marks = [m for m in sheet["marks"] if "frame" in m and m["frame"] == frame["id"]]
         thick = [m["position"] for m in marks if m.get("position") and m["style"] == "main"]
         label = frame["position"] or max(sorted(set(thick)), key=thick.count, default="")
         if label in plan["positions"]:
@@ -78,6 +78,7 @@ class _Frame:
         self.named = {self.steps[key]["name"]: key for key in self.points}
         self.anchors: dict[str, str] = {}
         self.lines: dict[str, list[list[str]]] = {}
+        self.blocks: dict[str, str] = {}
         self.letters: dict[int, tuple[complex, Place | None]] = {}
 
     def value(self, key: str) -> complex | None:
@@ -101,7 +102,8 @@ class _Frame:
 
     def marks(self) -> Iterator[dict[str, Any]]:
         """Marks with what they hang on, those on nothing left out; with a pole, hodographs of its vectors."""
-        lines_first = sorted(self.drawn, key=lambda m: 2 if m["role"] == "text" else "line" not in m["geometry"])
+        lines_first = [m for turn in (0, 1, 2) for m in self.drawn
+                       if turn == (2 if m["role"] == "text" else "line" not in m["geometry"])]
         for mark in lines_first:
             still = mark["role"] in ("axis", "curve") and "position" not in mark
             if mark.get("position") != self.label and not still and not (mark["role"] == "construction" and "position" not in mark):
@@ -136,6 +138,8 @@ class _Frame:
         if not pair and mark["role"] == "construction" and kind == "line":
             return None
         self.anchors.setdefault(key, anchor or (pair or [""])[-1])
+        if anchor and len(along) == 1 and shape.get("closed"):
+            self.blocks[along[0]] = anchor
         more = {name: shape[kind][name] for name in ("radius", "from", "to") if name in shape.get(kind, {})}
         if pair and more and abs(abs(self.points[pair[1]] - self.points[pair[0]]) - more["radius"]) < HERE:
             points, along, more["reach"] = [self.points[pair[0]]], [], pair
@@ -169,6 +173,9 @@ class _Frame:
 
     def _place_of_letter(self, key: str, z: complex) -> Place | None:
         """What a letter hangs on, its place beside that, mm, along which line, and between which points."""
+        if self._is_of_block(key, z):
+            off = z - self.points[self.blocks[key]]
+            return self.blocks[key], off * min(1.0, FAR / abs(off)) / (self.direction([key]) or 1), [key], None
         if key in self.lines:
             _, pair, share = min((self._beside(z, *pair) for pair in self.lines[key]), key=lambda found: found[0])
             a, b = (self.points[name] for name in pair)
@@ -179,6 +186,14 @@ class _Frame:
         along = [key] if key in self.known and self.steps[key]["kind"] in ("force", "direction") and self.value(key) else []
         off = z - self.points[anchor]
         return anchor, (off if along else _nearer(off)) / (self.direction(along) or 1), along, None
+
+    def _is_of_block(self, key: str, z: complex) -> bool:
+        """Whether a lettering is the number of a block: of the two of a direction that is the one farther off the bar."""
+        if key not in self.blocks or key not in self.lines:
+            return False
+        places = [complex(*m["geometry"]["text"]["at"]) for m in self.drawn if m.get("step") == key and "text" in m["geometry"]]
+        off = [min(self._beside(at + 1j * NEAR / 2, *pair)[0] for pair in self.lines[key]) for at in (z, *places)]
+        return len(places) > 1 and off[0] == max(off)
 
     def _beside(self, z: complex, first: str, last: str) -> tuple[float, list[str], float]:
         """How far a place lies off a line, mm, the line, and which share of it is nearest."""
@@ -260,7 +275,7 @@ def markers(project: Project, record: Mapping[str, Any], sheet: Mapping[str, Any
     for frame in sheet["frames"]:
         if frame["plan"].startswith(OTHERS):
             continue
-        marks = [m for m in sheet["marks"] if m.get("frame") == frame["id"]]
+        marks = [m for m in sheet["marks"] if "frame" in m and m["frame"] == frame["id"]]
         of = "cam" if frame["plan"].startswith("cam") else "crank"
         mu = _scale(project, of, frame)
         axis = exp(1j * frame["turn"])

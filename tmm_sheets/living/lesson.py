@@ -7,7 +7,8 @@ point where the lines cross, the rate of turning that follows from it, points by
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from itertools import takewhile
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -62,6 +63,15 @@ OTHERS = {
     "draw": (marked("Construction"), ""),
 }
 """Titles of other stops, and why what is drawn is so."""
+SIGNS = {
+    "n": marked("is normal: towards the centre of rotation"),
+    "τ": marked("is tangential: across the link, where its turning speeds up or slows down"),
+    "к": marked("is the Coriolis acceleration: of a block on a link that turns"),
+    "r": marked("is relative: along the line on which the block slides"),
+}
+"""What signs above accelerations mean."""
+COINCIDENT = re.compile(r"_\{?([A-Z])(\d)\}?$")
+"""Index of the vector of a point of a numbered link."""
 RATES = (motion.ANGULAR_VELOCITY, motion.ANGULAR_ACCELERATION)
 
 
@@ -120,7 +130,18 @@ class _Lesson:
                 stops.append(one)
         pole = self.plan.pole
         return {"plan": self.plan.name, "pole": "" if pole is None else self.index.id(self.plan[pole]), "stops": stops,
-                "equations": self._filled(stops)}
+                "equations": self._filled(stops), "symbols": list(self._symbols())}
+
+    def _symbols(self) -> Iterator[tuple[str, str]]:
+        """What letters of the equations stand for: the pole, points of links that lie in others, signs above vectors."""
+        if self.plan.pole is not None:
+            yield str(self.plan.pole), tr("is the pole: the vectors of all points begin there; points at rest lie in it")
+        for _, head, _ in self.equations:
+            if (of := COINCIDENT.search(head)) is not None:
+                yield of[1] + of[2], tr("is the point of link {n} that is at {of} now").format(n=of[2], of=of[1])
+        terms = (symbol for _, _, sides in self.equations for side in sides for symbol, *_ in side)
+        met = {symbol.rpartition("^")[2]: symbol for symbol in terms if "^" in symbol}
+        yield from ((met[sign], tr(words)) for sign, words in SIGNS.items() if sign in met)
 
     def _filled(self, stops: list[dict[str, Any]]) -> list[dict[str, Any]]:
         """The equations, each term with the numbers of the stops that draw it, and the line of its unknown length, or -1.
@@ -216,11 +237,13 @@ def lesson_words() -> dict[str, str]:
         "which plan": tr("Which plan"),
         "step {n} of {all}": tr("Step {n} / {all}"),
         "begin": tr("What is known stands in the equation twice underlined, what has a direction only once. Press › and draw it."),
+        "a millimetre": tr("A millimetre of the plan is {value}."),
         "segment": tr("|{name}| = {mm} mm"),
         "the same point": tr("Point {name} falls on {other}: nothing to draw."),
         "lecture": tr("Lecture"),
-        "copy link": tr("Copy link"),
+        "copy link": tr("Link, QR"),
         "copied": tr("The link is copied"),
+        "no code": tr("When the page is on a web server, a QR code for phones stands here."),
         "film": tr("Film"),
         "film of the plan": tr("Play the lesson and keep it as a film (WebM)"),
         "no film here": tr("This browser cannot make a film"),

@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
     from tmm_sheets.task.variant import Variant
 
-MODULES = ("digits", "primitives", "strokes", "courses", "searches", "formula", "data", "flywheel", "machine", "sheet",
-           "steps", "ask", "markers", "player", "stage", "drag", "change", "lesson", "guess", "address", "main")
+MODULES = ("digits", "primitives", "strokes", "courses", "searches", "formula", "data", "machine", "sheet",
+           "steps", "ask", "markers", "player", "letters", "stage", "drag", "change", "lesson", "guess", "webm", "address", "main")
 """Modules of the page in templates/living, in the order in which they stand in it."""
 
 
@@ -115,10 +115,14 @@ def _written(record: Mapping[str, Any], made: MotionProgram | None) -> str:
         "style": _text("page.css"), "font": b64encode(template("fonts/TMMSheetsB.ttf").read_bytes()).decode(),
         "record": b64encode(packed).decode(),
         "programs": f"{{\n{programs}\n}}".replace("</", "<\\/"),
-        "modules": re.sub(r"(?m)^(import .*\n|export )", "", "\n".join(
-            _text(f"{name}.js") for name in ("../page/dom", "../page/zoom", *MODULES))),
+        "modules": f"{_text('vendor/lean-qr.js')}\n{script()}",
     }  # fmt: skip
     return re.sub(r"<!--(\w+)-->", lambda m: parts[m[1]], _text("page.html"))
+
+
+def script() -> str:
+    """Modules of the page in one, which has no names outside."""
+    return re.sub(r"(?m)^(import .*\n|export )", "", "\n".join(_text(f"{n}.js") for n in ("../page/dom", "../page/zoom", *MODULES)))
 
 
 def _text(name: str) -> str:
@@ -209,7 +213,7 @@ def page_words() -> dict[str, str]:
         "list of keys": tr("Space: play or pause\n← →: a step, or a degree\nHome, End: beginning, end\n"
                            "+ −: zoom, 0: the whole sheet\nEsc: leave a step\nCtrl+Z: undo\n"
                            "In a drawing: ↑ ↓ from line to line, Enter: tell of it\n"
-                           "In a lesson: G: guess, F: lecture, B: dark"),
+                           "In a lesson: G: guess, F: lecture, B: dark, Q: link"),
         "loads": tr("Loads"),
         "made of": tr("Made of"),
         "masses": tr("Masses and moments of inertia"),
@@ -217,6 +221,7 @@ def page_words() -> dict[str, str]:
         "play": tr("Play"),
         "play it": tr("Press ▶ to see each line drawn as a hand draws it."),
         "position {label}": tr("position {label}"),
+        "reachable": tr("Reachable crank angles: {ranges}"),
         "redo": tr("Redo"),
         "reset": tr("Reset"),
         "save as project file": tr("Save as project file"),

@@ -51,7 +51,7 @@ FILES = {"compare": 80_000_000, "group": 400_000_000}
 NOTHING = "'none'"
 MOST_FILES = 1000
 TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".ttf": "font/ttf"}
-_SCRIPT = re.compile("<script>(.*?)</script>", re.DOTALL)
+_SCRIPT = re.compile('<script type="module">(.*?)</script>', re.DOTALL)
 
 
 def app(token: str, host: str, shown: Shown, processes: int | None = None) -> Guard:
