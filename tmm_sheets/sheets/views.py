@@ -196,10 +196,10 @@ VIEWS = {view.draw: view for view in (
     ViewKind("plan_checks.of_reducer", "reducer", sizes="plan_checks.of_reducer.sizes", stands="anywhere"),
     ViewKind("reducer.choice", "reducer", place="gear_sizes.table"),
     ViewKind("reducer.conditions", "reducer", place="gear_sizes.table"),
-    ViewKind("reducer.links", "reducer", by="train.reducer_links", sizes="train.reducer_links.sizes"),
-    ViewKind("reducer.points", "reducer", by="train.reducer_points", place="gear_sizes.table", sizes="train.reducer_points.sizes"),
+    ViewKind("reducer.links", "reducer", by="train.links", sizes="train.links.sizes"),
+    ViewKind("reducer.points", "reducer", by="train.points", place="gear_sizes.table", sizes="train.points.sizes"),
     ViewKind("reducer.scheme", "reducer", by="train.reducer_scheme", place="gear_sizes.scheme", picture="wheels"),
-    ViewKind("reducer.speeds", "reducer", by="train.reducer_speeds", place="gear_sizes.speeds"),
+    ViewKind("reducer.speeds", "reducer", by="train.speeds", place="gear_sizes.speeds"),
     ViewKind("reducer.of_stage", "reducer", sizes="reducer.of_stage.sizes"),
     # gear trains
     ViewKind("plan_checks.of_train", "train", sizes="plan_checks.of_train.sizes", stands="anywhere"),

@@ -25,7 +25,7 @@ from tmm_sheets.words import tell, tr
 if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.reduced import Reduced, Reduction
 
-BENT = 0.05
+BENT = 0.02
 """An interval is halved when its ordinate in the middle tells its work wrongly by more, share of the range of the work."""
 
 

@@ -6,7 +6,7 @@ from cmath import rect
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import degrees, pi, radians
+from math import ceil, degrees, pi, radians
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -17,7 +17,7 @@ from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
 from tmm_sheets.drawing.lettering import fitted, letter, size_for
 from tmm_sheets.drawing.marks import Box, Points
-from tmm_sheets.drawing.text_layout import needs
+from tmm_sheets.drawing.text_layout import needs, wrapped
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.player import OVER, PlayerStage, placed, play
@@ -75,8 +75,8 @@ def raised(box: Box, room: Box, height: float) -> tuple[Box, Box]:
 
 def centred(canvas: Canvas, box: Box, above: float, text: str) -> None:
     """A remark in the middle of a view's place, ``above`` mm over its foot."""
-    laid = fitted(text, box.width, 3.5)
-    canvas.put(laid, complex(box.centre.real - laid.width / 2, box.y0 + above), 0.0, text)
+    lines = wrapped(text, 3.5, ceil(letter(text, 3.5).width / box.width))
+    canvas.lines(complex(box.centre.real, box.y0 + above + 5.5 * (len(lines) - 1)), lines, 5.5, 3.5, "centre")
 
 
 def in_mm(symbol: str) -> str:
@@ -121,7 +121,7 @@ def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         y -= down
     stages = [placed(canvas, m.plan, o, 1.0) for o in origins]
     course = placed(canvas, m.between_plan, origins[0], 1.0)
-    _phase_borders(canvas, m, origins, ups)
+    _phase_borders(canvas, m, origins)
     texts = (tr("{symbol}, m"),) * 3 if law.symbol == "S" else ("{symbol}", "{symbol}", tr("{symbol}, rad"))
     symbols = [text.format(symbol=name) for text, name in zip(texts, m.names, strict=True)]
     steps = (m.dds, m.ds, m.s)
@@ -143,18 +143,14 @@ def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     _phase_angles(canvas, m, origins[2] - 7j)
 
 
-def _phase_borders(canvas: Canvas, m: FollowerMotion, origins: list[complex], ups: list[float]) -> None:
-    """Lines through all diagrams where rise and fall begin and end, interrupted where the headings stand."""
+def _phase_borders(canvas: Canvas, m: FollowerMotion, origins: list[complex]) -> None:
+    """Lines through all diagrams where rise and fall begin and end; they yield to the headings."""
     n = m.law.parts
     s = placed(canvas, m.numbers, origins[0], 1.0)
     for k in (0, n, n + 1, 2 * n + 1):
         step = m.numbers[f"x_{m.law.labels[k]}"]
         x = origins[0].real + float(step.value)
-        pen = s.pen(step, "construction")
-        for upper, lower, up in zip(origins, origins[1:], ups[1:], strict=False):
-            head = lower.imag + up
-            pen.line(complex(x, upper.imag), complex(x, head + 11.0), "construction")
-            pen.line(complex(x, head + 4.0), complex(x, lower.imag), "construction")
+        s.pen(step, "construction").line(complex(x, origins[0].imag), complex(x, origins[-1].imag), "construction")
 
 
 def _phase_angles(canvas: Canvas, m: FollowerMotion, base: complex) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from cmath import phase, rect
 from functools import lru_cache
 from itertools import pairwise
-from math import degrees, pi
+from math import cos, degrees, pi, sin
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -14,6 +14,7 @@ from tmm_sheets.construction.equation import digits_for
 from tmm_sheets.construction.scale import Scale, fitting
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink import segment_inside
+from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
@@ -51,14 +52,6 @@ def profile(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
         here, centre = s.position(k), s.position(k).at(inv.centres)
         if picture.roller > 0:
             play(here, ["F"], "main" if k == 0 else "construction")
-        if k == 0 and picture.roller > 8:
-            # On the side from which the cam turns, the arcs of the inversion lie on the other; over it a rocker has its path.
-            tip = rect(picture.roller, picture.first - cam.right * (0.75 if cam.kind == "rocker" else 1 / 3) * pi)
-            # The value stands outside: within are the numbers of the arcs.
-            pen, out = here.pen("F", "dimension"), centre + tip * (1 + 5.0 / picture.roller)
-            pen.arrow(centre, centre + tip, "thin", 3.0)
-            pen.line(centre + tip, out, "thin")
-            canvas.label(out, f"r_p = {number(cam.roller * 1e3)}", tip, 3.5, 0.6)  # type: ignore[attr-defined]
         here.dot(inv.centres, 0.6, "main")
         if k:
             canvas.label(centre, label, centre - picture.origin, 3.5, 0.8)
@@ -71,6 +64,31 @@ def profile(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     corner = picture.corner(size) or complex(box.centre.real - size[0] / 2, box.y0 + FOOT + size[1])
     canvas.table(corner, _widths(cam), _given(cam, options.get("angle", ANGLE)), _ROW, 3.5)
     _path(s, picture, first, Box(corner.real, corner.imag - size[1], corner.real + size[0], corner.imag))
+    if picture.roller > 8:
+        _radius_of_roller(s.position(0), picture, f"r_p = {number(cam.roller * 1e3)}", first)  # type: ignore[attr-defined]
+
+
+def _radius_of_roller(s: PlayerStage, picture: _ProfilePicture, text: str, first: int) -> None:
+    """Radius of the roller in position 0 in the direction in which it, and its value outside, meet least of what is drawn."""
+    ink, laid, centre = InkIndex(s.canvas.marks[first:]), letter(text, 3.5), s.at(picture.cam.inversion.centres)
+    half, reach = complex(laid.width, laid.ascent + laid.descent) / 2, picture.roller + 5.0
+
+    def value(u: complex) -> Box:
+        beside = complex(half.real * u.real, half.imag * u.imag) / max(abs(u.real), abs(u.imag))
+        corner = centre + reach * u + beside - half
+        return Box(corner.real, corner.imag, corner.real + 2 * half.real, corner.imag + 2 * half.imag)
+
+    def met(u: complex) -> int:
+        box = value(u)
+        outside = 100 * (not picture.room.contains(complex(box.x0, box.y0)) or not picture.room.contains(complex(box.x1, box.y1)))
+        return outside + 4 * ink.count_in(box.inset(-1.0)) + ink.count_in(
+            Box(picture.hole + 0.5, -1.0, reach, 1.0), centre, phase(u))
+
+    u = min((rect(1.0, k * pi / 18) for k in range(36)), key=met)
+    pen = s.pen("F", "dimension")
+    pen.arrow(centre, centre + picture.roller * u, "thin", 3.0)
+    pen.line(centre + picture.roller * u, centre + reach * u, "thin")
+    s.canvas.put(laid, complex(value(u).x0, value(u).y0 + laid.descent), 0.0, text)
 
 
 def _pictured(cam: Cam, box: Box, table: tuple[float, float] | None = None) -> _ProfilePicture:
@@ -319,8 +337,10 @@ def _circles(s: PlayerStage, picture: _ProfilePicture) -> None:
             wide = letter(text, 3.5).width
             if scale.mm(radius) < 2.0 * wide:  # beyond its arrow, where there is more room
                 canvas.label(tip, text, rect(1, angle), 3.5, 1.0)
-            else:
-                canvas.label(origin + rect(scale.mm(radius) - 3.0 - wide / 2, angle), text, 1j * rect(1, angle), 3.5, 0.6)
+            else:  # on the side away from the nearer centre line: that of r_0 beyond the arcs of the phases, that of e within
+                middle = scale.mm(radius) - 3.0 - wide / 2 if name == "r_0" else \
+                    min(_round(picture) - 1.5, scale.mm(radius) - 3.0) - wide / 2
+                canvas.label(origin + rect(middle, angle), text, 1j * cos(2 * angle) * sin(2 * angle) * rect(1, angle), 3.5, 0.6)
     canvas.label(origin, "O", -1 - 1j, 5.0, 3.5)
 
 
@@ -459,12 +479,17 @@ def _second_disc(s: PlayerStage, course: PlayerStage, picture: _ProfilePicture) 
         canvas.label(second, "B′_0", u + 0.6, 3.5, picture.roller + 1.0)
 
 
+def _round(picture: _ProfilePicture) -> float:
+    """Radius of the arcs of the phases, mm: within the circle e where that leaves room."""
+    cam, reach = picture.cam, picture.scale.mm(picture.cam.r0)
+    inner = picture.scale.mm(abs(cam.zone.e)) if picture.kind == "tappet" else 0.0  # type: ignore[attr-defined]
+    return float(0.78 * inner if inner > 0.35 * reach else 0.42 * reach)
+
+
 def _phase_angles(s: PlayerStage, picture: _ProfilePicture) -> None:
     """Angles of the phases from the line of position 0, the cam's and the inverted sense of rotation."""
     cam, origin, scale, start, canvas = picture.cam, picture.origin, picture.scale, picture.start, s.canvas
-    reach = scale.mm(cam.r0)
-    inner = scale.mm(abs(cam.zone.e)) if picture.kind == "tappet" else 0.0  # type: ignore[attr-defined]
-    radius = 0.78 * inner if inner > 0.35 * reach else 0.42 * reach
+    reach, radius = scale.mm(cam.r0), _round(picture)
     for p in cam.law.phases:
         ends = sorted(start + cam.right * v for v in (p.start, p.end))
         s.line(cam.inversion.ends, origin, origin + rect(reach, start + cam.right * p.start), "thin")

@@ -47,8 +47,6 @@ CLEAR = 14.0
 """How far the sign of a straight graph stands from the other curve, mm."""
 CROWD = 4
 """So many intervals between two positions on an average are drawn, with their rays, as they are."""
-FELT = 0.02
-"""Error of the work by ordinates from which on the sheet tells what it does to the flywheel beside it."""
 ENLARGED = 52.0
 """What the enlarged diagram needs for its title, signs, numbers and distance from all else, mm."""
 BESIDE_MASS = 10.0
@@ -230,15 +228,11 @@ def moments(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
     peak = int(np.argmax(size))
     falling = line[peak + int(np.argmax(size[peak:] < 0.6 * size[peak]))]
     canvas.label(g(falling), tr("M_{index}^{{red}}").format(index=varying), 1 - 1j if falling.imag < 0 else 1 + 1j, height=5)
-    canvas.label(g(_clear_of(line, level, length)), tr("M_{index}^{{red}}").format(index=constant), -1j if level > 0 else 1j,
-                 height=5)
-
-
-def _clear_of(line: Points, level: float, length: float) -> complex:
-    """Place on the line of the constant moment for its sign: the first of some that the other curve keeps clear of, mm."""
-    places = [share * length + 1j * level for share in (0.78, 0.7, 0.86, 0.6, 0.5, 0.4, 0.3, 0.2)]
-    ways = [float(np.abs(graphs.dense(line) - z).min()) for z in places]
-    return next((z for z, way in zip(places, ways, strict=True) if way > CLEAR), places[int(np.argmax(ways))])
+    # Where the other curve is farthest from it, rather near the end.
+    share = np.linspace(0.2, 0.78, 12)
+    away = np.abs(graphs.dense(line)[:, None] - (share * length + 1j * level)).min(axis=0)
+    at = share[np.argmax(np.minimum(away, CLEAR) + share)] * length + 1j * level
+    canvas.label(g(at), tr("M_{index}^{{red}}").format(index=constant), -1j if level > 0 else 1j, height=5)
 
 
 def axes(fw: Flywheel, of: PlayerStage, step: Step | str, g: graphs.Graph, span: tuple[float, float], ordinate: str, side: Floats,
@@ -322,12 +316,9 @@ def works(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     nothing = is_zero(float(fw.work_converged[-1]), float(np.abs(fw.work).max()))
     by_area = tr("by the area of the graph 0 J") if nothing else tr("by the area of the graph {work} J ({share} %)").format(
         work=converged, share=share if share.startswith("−") else f"+{share}")
-    note: tuple[str, ...] = (tr("A_{index}({label}) = {work} J by the ordinates in the middles of the intervals,").format(
-        index=varying, label=fw.labels[-1], work=drawn), by_area)
-    if not nothing and abs(fw.work_error) >= FELT and (fw.given or fw.needed) and abs(fw.difference_percent) < 100:
-        far = tr("δ by them: {difference} % from n → ∞") if fw.given else tr("J_{{f}} by them: {difference} % from n → ∞")
-        note += (far.format(difference=f"{'+' if fw.difference_percent > 0 else ''}{fixed(fw.difference_percent, 2)}"),)
-    heads = tr("Graphs of work"), f"{s.work}", "; ".join((" ".join(note[:2]), *note[2:]))
+    by_ordinates = tr("A_{index}({label}) = {work} J by the ordinates in the middles of the intervals,").format(
+        index=varying, label=fw.labels[-1], work=drawn)
+    heads = tr("Graphs of work"), f"{s.work}", f"{by_ordinates} {by_area}"
     g = graphs.begin(canvas, box, options, heads, low, high, 4.0, "flywheel.works")
     canvas.of = fw.work_plan.name
     of, drive = (stage(canvas, p, None, g.place()) for p in (fw.work_plan, fw.driving_plan))
@@ -432,11 +423,11 @@ def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) ->
             above = complex(above.real, title.y1 + 1.5)
         here.line("points", above, below)
         here.dot("points", 0.7, "main")
-    touched = [plan[f"T_{name}"].value for name in ("max", "min")]
+    tangents = [(plan[end].value, plan[f"t_{name}"].value * way) for name, end, way in (("max", "a", -1j), ("min", "b", 1j))]
     for near in together(points[:-1], 1.0):
-        # The number of a point beside that of a tangent, which has none, stands on the other side.
-        aside = [points[near[0]] - t for t in touched if 0.5 < abs(points[near[0]] - t) < BESIDE]
-        away = min(aside, key=abs, default=points[near[0]] - middle)
+        # The number of a point beside a tangent stands on the other side: it would be that of the point of contact.
+        at = points[near[0]]
+        away = next((n for cut, n in tangents if abs(((at - cut) * np.conj(n)).real) < BESIDE), at - middle)
         of.position(near[0]).letters("points", ", ".join(fw.labels[k] for k in near), away / abs(away))
     reach = curve.real.max() + graphs.OVER
     low, high = _energy_range(fw)
@@ -460,7 +451,6 @@ def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) ->
         pen, angle = of.pen(f"ψ_{name}", "dimension"), float(plan[f"ψ_{name}"].value)
         pen.line(g(vertex), g(vertex + 45), "thin")
         pen.angle_mark(complex(g(vertex)), 0.0, angle, 40.0, f"ψ_{name} = {fixed(degrees(angle), 2)}°")
-        of.dot(f"T_{name}", 0.7, "main")
         of.letters(end, end, -1 + (1j if (end == "a") == (fw.ab_mm >= 0) else -1j), height=5)
     ends = sorted((plan["a"].value, plan["b"].value), key=lambda z: float(z.imag))
     length = _of_segment(fw)
@@ -791,8 +781,10 @@ def _inertia_graph(fw: Flywheel, box: Box, options: Options) -> graphs.Graph:
 
 AB = 14.0
 """Distance of the dimension line of ab from the axis of the energy-mass diagram, mm."""
-BESIDE = 4.0
-"""How near to the point of a tangent the number of another point could be taken for its own, mm."""
+BESIDE = 10.0
+"""How near to a tangent the number of a point could be taken for that of the point of contact, mm."""
+
+
 @in_role("symbol")
 def _spoke(canvas: Canvas, centre: complex, u: complex, inner: float, outer: float, half: float) -> None:
     for sign in (1, -1):

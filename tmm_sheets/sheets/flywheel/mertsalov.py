@@ -8,7 +8,6 @@ options ``energies`` (change, second group, first group) and ``inertia`` are the
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import degrees
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -21,7 +20,7 @@ from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_layout import TOGETHER
-from tmm_sheets.numbers import clean, decimals_for, enough, fixed, number
+from tmm_sheets.numbers import clean, decimals_for, degrees_and_minutes, enough, fixed, number
 from tmm_sheets.sheets.components import graphs, listed
 from tmm_sheets.sheets.flywheel import flywheel
 from tmm_sheets.sheets.linkage.kinetic_frames import flat
@@ -127,7 +126,7 @@ def _tangent(fw: Mertsalov, of: PlayerStage, box: Box, head: float) -> None:
     of.canvas.tracing("dimension", step.path, of.label).line(vertex, vertex + side * 20, "thin")
     start, end = (0.0, psi) if psi > 0 else (np.pi + psi, np.pi)
     if abs(psi) > 0.02:
-        of.canvas.angle_mark(vertex, start, end, 16.0, f"ψ = {fixed(degrees(psi), 2)}°")
+        of.canvas.angle_mark(vertex, start, end, 16.0, f"ψ = {degrees_and_minutes(psi)}")
 
 
 def energies(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
@@ -207,8 +206,9 @@ def results(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
     for step in plan:  # what is nothing beside the other positions is nothing
         own[id(step)] = Quantity(names.get(step.name, letters_of(step.symbol or step.name)),
                                  clean(float(step.at(k)), float(np.abs(step.value).max())), step.rule.unit)
+    own[id(plan["ψ"])] = Quantity("ψ", float(plan["ψ"].value[k]), "rad")
     moment, inertia, slope, epsilon = (of_step(plan[name], k, own=own) for name in ("M", "J", "dJ/dφ", "ε1"))
-    position = f"{tr('Position {label}').format(label=fw.labels[k])}:  ψ = {fixed(degrees(float(plan['ψ'].value[k])), 2)}°"
+    position = f"{tr('Position {label}').format(label=fw.labels[k])}:  ψ = {degrees_and_minutes(float(plan['ψ'].value[k]))}"
     listed.draw_lines(canvas, box, tr("Flywheel design by Mertsalov's method"), [
         _givens(fw), *flywheel.found(fw), *([flywheel.converged(fw)] if fw.given else []), of_step(fw.speed_plan["μ_ω"]),
         *_extremes(fw), f"{position};  {slope}", moment, inertia, epsilon,

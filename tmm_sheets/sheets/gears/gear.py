@@ -16,6 +16,7 @@ from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.drawing.marks import Box, Dimension
+from tmm_sheets.methods.gears.gear_formulas import GIVEN_DISTANCE
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.components.listed import Form, Formulas
@@ -359,7 +360,7 @@ DECIMALS = 4, 7
 
 def _forms(plan: Plan) -> Iterator[Form]:
     """The equations of pair and wheels, then those of the pair alone, broken at several widths."""
-    of_pair = list(equations(plan, OF_PAIR, True))
+    of_pair = list(equations(plan, [step.name for step in plan if step.name in OF_PAIR], True))
     every = [*of_pair, *equations(plan, [f"{name}{i}" for i in (1, 2) for name in OF_WHEEL], False)]
     return (Form([[part for line in lines for part in broken(line, width, HEIGHT, "(?= = )")]], HEIGHT, step)
             for lines, (step, width) in product((every, of_pair), WAYS))
@@ -414,6 +415,6 @@ def equations(plan: Plan, names: Iterable[str], letters: bool) -> Iterator[str]:
         least = _decimals(of) if isinstance(of, Step) else 0
         return Quantity(symbol, value, unit, digits_for(value, least), least) if least else Quantity(symbol, value, unit)
 
-    for step in (plan[name] for name in names if name in plan):
+    for step in (plan[name] for name in names if name in plan and plan[name].rule is not GIVEN_DISTANCE):
         if said := of_step(step, in_letters=letters, quantity=quantity):
             yield said

@@ -5,18 +5,18 @@ from __future__ import annotations
 from cmath import phase, rect
 from functools import lru_cache
 from math import degrees, pi, radians
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tmm_sheets.construction.scale import STANDARD, TOOTH, Scale
-from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, lettered
-from tmm_sheets.drawing.ink import arcs_inside, segment_inside
+from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas
+from tmm_sheets.drawing.ink import arcs_inside
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box, Line
+from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import degrees_and_minutes, fixed
-from tmm_sheets.sheets.components.clear_dimensions import around, crossed, dimension
+from tmm_sheets.sheets.components.clear_dimensions import crossed, dimension
 from tmm_sheets.sheets.gears.gear_marks import Window, hatch_between
 from tmm_sheets.sheets.player import PlanFrame, play, ratio, stage, standard
 from tmm_sheets.words import tr
@@ -33,8 +33,6 @@ DIMENSION = 8.0
 """Distance of the dimension lines of the teeth from the root circle, mm."""
 FURTHEST = 40.0
 """So much farther the dimension lines of the teeth stand at most where lines would run through their lettering, mm."""
-SLIVER = 1e-6
-"""mm of a line beside its lettering that are nothing but rounding."""
 DIMENSIONED = 40.0
 """Height within the root circles that the dimensions of the teeth take with the angles under them, mm."""
 DIVISION = 10.0
@@ -147,7 +145,7 @@ class GearPicture:
                      for number in self.broken}
         self.box = self.box.inset(0, HUB * (2 in self.broken), 0, HUB * (1 in self.broken))
         self.spokes: list[int] = []
-        """Numbers of the marks of radial lines, which make way for the dimensions of the teeth."""
+        """Numbers of the marks of radial lines, which yield to the lettering of the dimensions of the teeth."""
         self.window = Window(canvas, self.box.inset(3))  # room for the kinks of break lines
         self.mm = self.mu.mm
 
@@ -210,18 +208,12 @@ class GearPicture:
 
     def spoke(self, wheel: GearWheel, step: str, end: complex, style: str) -> None:
         """Line from a wheel's centre, interrupted where the dimensions of its teeth are written."""
-        centre, first = self.of(f"O{wheel.number}"), len(self.canvas.marks)
-        self._spoke(wheel, step, centre, end, style)
-        self.spokes.extend(range(first, len(self.canvas.marks)))
-
-    def _spoke(self, wheel: GearWheel, step: str, centre: complex, end: complex, style: str) -> None:
+        centre, first, root = self.of(f"O{wheel.number}"), len(self.canvas.marks), self.mm(wheel.rf)
         u = (end - centre) / abs(end - centre)
-        if wheel.ring:  # they are written beyond its root circle
-            self.window.line(self.stage, step, centre, end, style)
-            return
-        root = self.mm(wheel.rf)
-        self.window.line(self.stage, step, centre, centre + u * (root - DIMENSION - 9), style)
-        self.window.line(self.stage, step, centre + u * (root - 1), end, style)
+        pieces = [(centre, centre + u * (root - DIMENSION - 9)), (centre + u * (root - 1), end)]
+        for a, b in [(centre, end)] if wheel.ring else pieces:  # of a ring they are written beyond its root circle
+            self.window.line(self.stage, step, a, b, style)
+        self.spokes.extend(range(first, len(self.canvas.marks)))
 
     def circles(self) -> None:
         """Circles of the wheels with their centres, and the line of centres."""
@@ -273,9 +265,7 @@ class GearPicture:
             s.line(f"N{i}", corner, foot + 3 * inward, "thin", "symbol")
             s.dot(f"N{i}", 0.8, "main")
             c.label(foot, f"N_{i}", away=away - inward, height=5, gap=1.5)
-        start, end = (pi, pi + self.gear.alpha_w) if h < 0 else (-self.gear.alpha_w, 0.0)
         pen, o1 = s.pen("alpha_w", "dimension"), self.of("O1")
-        pen.angle_mark(pole, start, end, (abs(n2 - pole) + abs((b if self.gear.driver == 1 else a) - pole)) / 2, "α_w")
         near = self.within(self.gear.wheels[0], 2.2 * UNDER) if 1 in self.broken else self.mm(self.gear.wheels[0].rb) * 0.45
         angle_beside(pen, o1, phase(n1 - o1), -pi / 2, near, f"α_w = {degrees_and_minutes(self.gear.alpha_w)}")
 
@@ -410,7 +400,6 @@ class GearPicture:
             a, b = (a, b) if side * (np.conj(b - a) * (centre - a)).imag > 0 else (b, a)
             offset = self.clear_of_lines(a, b, inside + DIMENSION, text)
             c.dimension(a, b, offset, text, factor=1e3 * self.mu.mu)
-            self.interrupt(*lettered(a, b, offset, text), text)
 
     def clear_of_lines(self, a: complex, b: complex, offset: float, text: str) -> float:
         """Offset of a dimension, this or a greater one, at which no line runs through its lettering.
@@ -419,23 +408,6 @@ class GearPicture:
         """
         ink = InkIndex(m for n, m in enumerate(self.canvas.marks) if n >= self.first and n not in self.spokes)
         return min((offset + further for further in np.arange(0.0, FURTHEST, 0.5)), key=lambda by: crossed(ink, a, b, by, text))
-
-    def interrupt(self, at: complex, along: complex, text: str) -> None:
-        """Interrupt the radial lines that would run through lettering whose baseline has its middle there (GOST 2.307)."""
-        marks, place = self.canvas.marks, around(text)
-        for n in [n for n in self.spokes if isinstance(marks[n], Line)]:
-            line = cast(Line, marks[n])
-            start, end = ((z - at) / along for z in (line.a, line.b))
-            hidden = segment_inside(place, start, end)
-            if hidden is None:
-                continue
-            near, far = sorted((z * along + at for z in hidden), key=lambda z: abs(z - line.a))
-            # Lettering that reaches beyond an end leaves one piece, one that reaches beyond both nothing to be seen.
-            pieces = [piece for piece in (line._replace(b=near), line._replace(a=far)) if abs(piece.b - piece.a) > SLIVER]
-            marks[n] = pieces[0] if pieces else line._replace(b=line.a)
-            if len(pieces) > 1:
-                self.spokes.append(len(marks))
-                marks.append(pieces[1])
 
     def rotation(self, wheel: GearWheel) -> None:
         """Arrow of the angular velocity."""

@@ -12,6 +12,7 @@ from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
+from tmm_sheets.sheets.components import clear_dimensions
 from tmm_sheets.sheets.gears.gear_marks import Window, gap
 from tmm_sheets.sheets.player import PlanFrame, ratio, stage, standard
 from tmm_sheets.words import tr
@@ -34,6 +35,8 @@ NAMED = 36.0, 6.0, 12.0
 """Distance of the names of the rack's lines from the window's side, from one another, and the least from the side, mm."""
 USUAL, MOST = 1.6, 2.2
 """How far the window goes under the pole, in what must be seen there: without the wheel's centre, and with it at the most."""
+NUMBERED = 0.6
+"""Modules that the flanks with numbers reach beyond the tip circle at most."""
 BELOW = 0.5
 """Modules of the wheel's body under its root circle that the window must show at least."""
 
@@ -64,7 +67,7 @@ class _RackPicture:
     """The surroundings of the pole P0 of the generating engagement, cut out of wheel and rack."""
 
     def __init__(self, gear: GearPair, canvas: Canvas, box: Box) -> None:
-        self.gear, self.canvas = gear, canvas
+        self.gear, self.canvas, self.first = gear, canvas, len(canvas.marks)
         self.wheel = gear.pinion
         self.rack = self.wheel.rack
         top, bottom = extent(gear)
@@ -107,11 +110,10 @@ class _RackPicture:
         self.window.line(s, "M", complex(w.x0, reference), complex(w.x1, reference), "centre")
         names = [(reference, tr("reference and pitch line of the rack"))] if abs(reference - self.pole.imag) < 0.3 else \
             [(self.pole.imag, tr("pitch line of the rack")), (reference, tr("reference line of the rack"))]
-        # Their names end before the axis; in a window too narrow for that the axis ends under them.
+        # Their names end before the axis; in a window too narrow for that the axis yields to them.
         ends = [NAMED[1] * k + letter(text, 3.5).width + 2.0 for k, (_, text) in enumerate(names)]
         first = max(min(NAMED[0], self.pole.real - w.x0 - max(ends) - 1.0), NAMED[2])
-        under = NAMED[1] * (len(names) + 0.5) if w.x0 + first + max(ends) > self.pole.real else 0.0
-        self.window.line(s, "O", complex(self.pole.real, w.y0), complex(self.pole.real, w.y1 - under), "centre")
+        self.window.line(s, "O", complex(self.pole.real, w.y0), complex(self.pole.real, w.y1), "centre")
         for k, (y, text) in enumerate(names):
             at = complex(w.x0 + first, w.y1) + NAMED[1] * (k - (k + 1) * 1j)
             c.text(at + 1.0, text, 3.5)
@@ -138,16 +140,15 @@ class _RackPicture:
     def positions(self) -> None:
         """Positions of the rack's flank relative to the wheel, and the points in which they touch the tooth."""
         c, plan, rack = self.canvas, self.stage.plan, self.rack
-        top = self.wheel.addendum * self.gear.m
-        whole = rack.tooth(top)
+        whole = rack.tooth(self.wheel.addendum * self.gear.m)
         half = whole[: len(whole) // 2]
-        outside = self.wheel.ra + 0.2 * self.gear.m
         for k, along in enumerate(plan["OW"].value):
             placed = rack.placed(half, np.angle(along / 1j))
             start, flank = plan["F"].value[k], plan["flank"].value[k]
-            # A flank that leaves the teeth need not be followed any further.
+            # A flank that leaves the teeth need not be followed any further; those with numbers stand out of the others.
+            outside = self.wheel.ra + (0.1 if k % 2 else NUMBERED) * self.gear.m
             foot = (start * np.conj(flank)).real
-            placed[0] = start + flank * min(np.sqrt(outside**2 - abs(start - foot * flank) ** 2) - foot, top / np.cos(rack.alpha))
+            placed[0] = start + flank * (np.sqrt(outside**2 - abs(start - foot * flank) ** 2) - foot)
             placed = self.at(placed)
             s = self.stage.position(k)
             self.window.curve(s, "flank", placed, "thin")
@@ -205,5 +206,5 @@ class _RackPicture:
         a, b = (complex(self.pole.real + side * half, reference) for side in (-1, 1))
         if w.contains(a) and w.contains(b):
             text = f"p = {fixed(gear.p * 1e3, 2)}"
-            beside = 0.5 + (4.0 + letter(text, 3.5).width / 2) / abs(b - a)  # the axis
-            c.dimension(a, b, w.y1 - NOTES + 5.0 - reference, text, share=beside, factor=factor)
+            clear_dimensions.dimension(c, self.first, a, b, [w.y1 - NOTES + 5.0 - reference], text, factor,
+                                       shares=np.linspace(0.6, 0.2, 17))

@@ -44,7 +44,7 @@ def scheme(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
 
 def speeds(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Plan of the speeds of rotation: rays through the pole parallel to the lines of the picture of velocities."""
-    plan_of_speeds(project.train, canvas, box)
+    plan_of_speeds(_train(project), canvas, box)
 
 
 def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -119,9 +119,9 @@ def _signed(value: float) -> str:
     return f"({text})" if value < 0 else text
 
 
-points = Table(marked("Velocities of the points"), lambda project, canvas: rows_of_points(project.train, canvas), *POINTS)
+points = Table(marked("Velocities of the points"), lambda project, canvas: rows_of_points(_train(project), canvas), *POINTS)
 """Points of the picture of velocities: distance from the main axis, segment measured on the picture, velocity."""
-links = Table(marked("Speeds of rotation by the plan"), lambda project, canvas: rows_of_links(project.train, canvas),
+links = Table(marked("Speeds of rotation by the plan"), lambda project, canvas: rows_of_links(_train(project), canvas),
               LINKS)
 """Links on the plan of the speeds of rotation: segment measured on it, speed."""
 mobility = Lines(marked("Mobility and speeds of the links"), lambda project, canvas: mobility_lines(project.train))
@@ -131,11 +131,6 @@ mobility = Lines(marked("Mobility and speeds of the links"), lambda project, can
 def reducer_scheme(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Axial view, picture of velocities and end view side by side on one main axis, to one scale."""
     draw_scheme(project.reducer, canvas, box, tr("Scheme of the reducer, picture of velocities and end view"))
-
-
-def reducer_speeds(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Plan of the speeds of rotation: rays through the pole parallel to the lines of the picture of velocities."""
-    plan_of_speeds(project.reducer, canvas, box)
 
 
 def choice(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -187,13 +182,6 @@ def conditions(project: Project, canvas: Canvas, box: Box, options: dict[str, An
                      "; ".join(number(float(r.kinematics[f"d{n}"].value)) for n in some)))
     ruled_table(canvas, canvas.title(box, tr("Conditions and results of the reducer")), rows, (84.0,), LARGE,
                 list(map(sentence, r.warnings)))
-
-
-reducer_points = Table(marked("Velocities of the points"), lambda project, canvas: rows_of_points(project.reducer, canvas), *POINTS)
-"""Points of the picture of velocities: distance from the main axis, segment measured on the picture, velocity."""
-reducer_links = Table(marked("Speeds of rotation by the plan"), lambda project, canvas: rows_of_links(project.reducer, canvas),
-              LINKS)
-"""Links on the plan of the speeds of rotation: segment measured on it, speed."""
 
 
 def unsigned(ratio: float) -> str:
@@ -302,7 +290,7 @@ def _assembly(teeth: dict[str, int], q: int, one: Mesh, other: Mesh) -> dict[str
                         for z, count in (({name: f"z_{{{name}}}" for name in teeth}, "q"), (teeth, q)))
     said = f"{numbers} = {number(value)}"
     return {"letters": letters, "numbers": said if value == int(value) else
-            tr("{number} (not whole: no equal angles)").format(number=said)}
+            tr("{number} (not whole: no {count} at equal angles)").format(number=said, count=q)}
 
 
 checks = Lines(marked("Conditions of the planets"), lambda project, canvas: checks_of(project.train, *project.train.stages))

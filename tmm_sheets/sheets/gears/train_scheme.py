@@ -300,6 +300,10 @@ class TrainScheme:
             self.canvas.line(complex(end, y), complex(begin, y), "main")
             self.bearing(end - side * 6.0, y)
             self.canvas.label(complex(end, y), sign, away=complex(side, 1), height=5, gap=1.5)
+        between = [name for name in self.train.given if name in self.columns.keys() - self.ends and not self.train.stands(name)]
+        for name in between:
+            at = complex(self.columns[name][0], self.y(self.train.height(name)))
+            self.canvas.label(at, f"n_{{{link_name(name)}}}", away=1 - 1j, height=5, gap=self.face / 2 + 1.0)
 
     def joined(self) -> None:
         """Shafts and sleeves of what turns together: about a standing axis a shaft, planets on a carrier by a sleeve."""

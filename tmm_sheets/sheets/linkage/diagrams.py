@@ -251,11 +251,13 @@ def bearing(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     # In the plan itself the vectors stand elsewhere: here they begin at one point.
     canvas.tracing("curve", step.path, "", placed, name).polyline(drawn, "curve")
     axis = canvas.tracing("axis", step.path, "", placed, name)
-    for a, b in ((real.x0 + 0j, real.x1 + 0j), (1j * real.y0, 1j * real.y1)):
-        u = (b - a) / abs(b - a) if b != a else 0j
-        axis.line(complex(frame(a)) - 5.0 * u, complex(frame(b)) + 5.0 * u, "centre")
+    for a, b, u, sign in ((real.x0, real.x1, 1 + 0j, "x"), (real.y0, real.y1, 1j, "y")):
+        end = complex(frame(b * u)) + 5.0 * u
+        axis.arrow(complex(frame(a * u)) - 5.0 * u, end, "axis", 3.0)
+        axis.label(end, sign, u * (1 - 1j), 3.5, 0.8, leader=False)
     pole, middle, labels = complex(frame(0j)), complex(np.mean(drawn)), project.cycle.labels
     canvas.dot(pole, 0.8)
+    canvas.label(pole, "O", pole - middle, 3.5, 1.2)
     for same in together(ends, 1.0):  # in each turn the force is another one
         z, pen = complex(ends[same[0]]), canvas.tracing("point", step.path, labels[same[0]], placed, name)
         pen.dot(z, 0.5)

@@ -209,7 +209,13 @@ def _turning(project: Project, s: PlayerStage, index: str, step: Step, force: co
         for u in (1, 1j):
             s.canvas.line(centre - (journal + 4) * u, centre + (journal + 4) * u, "centre")
     _reaction(project, s, step, index, force, journal + 14.0)
+    pen, way = s.pen(of.radii[hinge], "dimension"), -1j * force * (0.8 + 0.6j) / abs(force) if force else 1 + 0j
+    pen.arrow(centre, centre + journal * way, "thin", 2.5)
+    pen.label(centre + 0.7 * journal * way, f"r_{{{hinge}}}", 1j * way, 3.5, 0.8)
+    pen.label(centre - float(of.radii[hinge].value) / s.frame.mu[1] * way, of.radii[hinge].symbol, -way, 3.5, 2.0)
     if not of.still(index, k):
+        symbols.rotation_arrow(s.pen(of.moments[index], "symbol"), centre, 0.75 * journal, 1j * force if force else 1j,
+                               float(np.real(of.moments[index].at(k))), letters_of(of.moments[index].symbol))
         symbols.rotation_arrow(s.pen(turn, "symbol"), centre, journal + 3.0, -force if force else 1 + 1j,
                                float(np.real(turn.at(k))), f"ω_{{{index}}}")
 
@@ -329,7 +335,7 @@ power = graphs.CycleView(lambda project: tr("Power of friction in the pairs"),
 
 
 def mechanism_place(project: Project, view: ViewPlace) -> BorderNode:
-    """The mechanism with the forces of"""
+    """The mechanism with its reactions to scale."""
     return leaf(view.box, reaching(view.box, *scheme(project), AROUND, (150.0, 90.0)))
 
 

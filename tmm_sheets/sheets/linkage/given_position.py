@@ -208,7 +208,7 @@ Columns = list[tuple[str, Any]]
 
 
 def of_points_and_links(project: Project) -> Columns:
-    """Accelerations of the moving points, m/s^2, and angular ones of the links, s^-2, at all positions."""
+    """Accelerations of the moving points, m/s^2, and angular ones of the links, s^-2, at all positions; nothing without points."""
     acc = project.study.accelerations
     sizes = [(f"a_{{{name}}}", np.abs(step.value)) for name, step in acc.points.items() if np.ndim(step.value)]
     found: Columns = [(name, v) for name, v in sizes if not np.allclose(v, v[0])]  # that of the crank pin is the same everywhere
@@ -216,8 +216,7 @@ def of_points_and_links(project: Project) -> Columns:
     crank, speed = project.mechanism.crank.link, project.mechanism.crank.speed
     turning = [(f"ε_{link}", np.real(step.value)) for link, step in acc.epsilon.items() if np.ndim(step.value) and link != crank]
     size = max((float(np.nanmax(np.abs(v))) for _, v in turning), default=0.0) + speed**2  # where none but rounding turns them
-    found += [(name, v) for name, v in turning if not is_zero(np.abs(v).max(), size)]
-    return found
+    return found + [(name, v) for name, v in turning if not is_zero(np.abs(v).max(), size)] if found else []
 
 
 def of_pairs(project: Project) -> Columns:

@@ -39,8 +39,8 @@ def figure(project: Project, canvas: Canvas, box: Box) -> None:
     c, b = (complex(plan[name].value) for name in "CB")
     reach = x["l_AB"] + roller
     points = [-reach + 0j, reach * 1j, -reach * 1j, *(c + x["l_BC"] * u for u in (1, 1j, -1j))]
-    frame = fit_frame(project, canvas, "synthesis", "μ_l", tr("m/mm"), points, [0j] * len(points), box.inset(6.0, 10.0, 6.0, 12.0))
-    canvas.text(complex(box.x0, box.y0 + 1.5), str(frame.scale), 3.5)
+    frame = fit_frame(project, canvas, "synthesis", "μ_l", tr("m/mm"), points, [0j] * len(points), box.inset(6.0, 18.0, 6.0, 32.0))
+    canvas.title(box, tr("Geneva cross and crank with its locking disc"), str(frame.scale))
     s, mm = stage(canvas, plan, 0, frame), frame.scale.mm
     pen = s.pen("B", "link", "cross")
     centre, width, bottom = frame(c), float(mm(roller)), float(mm(x["l_BC"] - x["h"] + roller))
@@ -67,6 +67,15 @@ def figure(project: Project, canvas: Canvas, box: Box) -> None:
         s.letters(name, found.called(name), -1 - 0.8j if name == "A" else 1 - 0.8j, gap=2.4)
     s.letters("B", found.called("B"), b / abs(b) * 1j, gap=width + 1.0)
     s.pen("CA", "axis").line(frame(-reach + 0j) - 3.0, centre + outer + 3.0, "centre")
+    factor, pivot, slot = 1e3 * frame.scale.mu, frame(0j), rect(1.0, slots[z // 2])
+    for end, radius, turn, name in ((pivot, first, 2.4, found.called("l_AB")), (pivot, lock, 3.6, tr("r_{l}")),
+                                    (frame(b), width, phase(b) + 0.3, "r_p")):
+        pen = s.pen("B", "dimension")
+        pen.arrow(end, end + rect(radius, turn), "thin", 2.5)
+        pen.label(end + rect(radius, turn), name, rect(1.0, turn), 3.5, 1.0)
+    canvas.angle_mark(pivot, 0.0, phase(b), 0.75 * lock, "β")
+    canvas.dimension(pivot, centre, -max(first, outer) - 9.0, found.called("l_AC"), factor=factor)
+    canvas.dimension(centre + (bottom - width) * slot, centre + outer * slot, 9.0, "h", factor=factor)
 
 
 def _crank(pen: Canvas, ends: tuple[complex, complex], lock: float, half: float, hollow: float) -> None:
