@@ -9,6 +9,7 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 from functools import cache
+from itertools import product
 from math import pi
 from typing import TYPE_CHECKING, Any
 
@@ -243,10 +244,13 @@ def _fitted(parts: Mapping[str, str], sizes: tuple[float, ...], width: float, he
         float, float, dict[str, list[str]]]:
     """Letter height, stretch and lines of each part: the largest of ``sizes`` at which they fit, in up to four lines.
 
-    A text too long for the smallest height gets ``narrower`` letters, and ends in dots if that is not enough.
+    A text too long for the smallest height gets ``narrower`` letters, and ends in dots if that is not enough; one of several lines
+    has them rather than letters below 3.5 mm.
     """
-    for size, wide in (*((size, 1.0) for size in sizes), *((sizes[-1], wide) for wide in narrower)):
+    for size, wide in product(sizes, (1.0, *narrower)):
         room = int((height / size - 1) / PITCH + 1 + 1e-9)  # lines
+        if wide < 1.0 and size > sizes[-1] and (room < 2 or size > 3.5):
+            continue
         wrapped = {name: _wrap(part, size, width / wide) if room > 1 else [part] if part else [] for name, part in parts.items()}
         laid = [letter(plain(line), size) for lines in wrapped.values() for line in lines]
         if not laid:

@@ -124,7 +124,9 @@ def _about_marks(project: Project, composed: Composed, book: StepIndex) -> Itera
                 own = named.get((path, at), "") if role in ("vector", "dimension") else ""
                 name = _plain(own or getattr(composed.drawing.marks[k].by, "name", ""))
                 answer = (*(sentence(one, at, book) for one in dict.fromkeys([*parents(step), step])), *lengths.get(k, ()))
-                found[plan].append(Question(_view(composed, k), _place(composed.drawing.marks[k]), tr(text).format(
+                # A line that is no more than how a point was found has that point's letter: what is asked is why it is there.
+                said = QUESTIONS["point"] if role == "construction" and not name and step.rule.gives == "point" else text
+                found[plan].append(Question(_view(composed, k), _place(composed.drawing.marks[k]), tr(said).format(
                     name=name or letter_of(step), position=at), answer))
         yield _in_turn(found.values())
 

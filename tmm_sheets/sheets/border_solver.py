@@ -252,7 +252,7 @@ class BorderNode:
         return found
 
 
-WITHOUT_TEXT, WITHOUT_DETAILS = 3.0, 5.0
+WITHOUT_TEXT, WITHOUT_DETAILS = 30.0, 5.0
 """What a figure costs without what is read with it: it rather comes out by one scale factor smaller, or by two."""
 UNDER = 3.0
 """Distance of the text under a figure from its place, mm."""
@@ -313,7 +313,8 @@ class FigureNode(BorderNode):
             if lacks or form.price * whole >= least:
                 break  # a smaller place costs no less
             wide, high = (form.width + ROUNDED, 0.0) if form.beside else (0.0, form.height + ROUNDED + UNDER)
-            if wide < width - SHOWN and high < height - SHOWN and (form.height <= height if form.beside else form.width < width):
+            own, room = (form.height, height) if form.beside else (form.width + ROUNDED, width)
+            if wide < width - SHOWN and high < height - SHOWN and own <= room:
                 price = form.price
                 cost, small = figure.priced(width - wide, height - high)
                 if not small and price * cost < least:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Collection, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations, product
+from itertools import combinations, pairwise, product, starmap
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -23,7 +23,7 @@ from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.ink import chord
 from tmm_sheets.drawing.ink_index import distance
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame, Points, Provenance, Text, flat
+from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame, Points, Polyline, Provenance, Text, flat
 from tmm_sheets.drawing.owners import AT, CLEARLY
 from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.numbers import number
@@ -58,7 +58,7 @@ HEAD = 16.0
 LETTERS = 3.5
 """Least height of its letters, mm."""
 NAMES = ("I", "II", "III", "IV", "V", "VI", "VII", "VIII")
-ROLES = ("vector", "construction", "point", "link", "symbol")
+ROLES = ("vector", "construction", "point", "link", "symbol", "hatch")
 
 
 @dataclass(frozen=True)
@@ -273,8 +273,18 @@ class Corner(Dense):
         named = self._enlarged(PlayerStage(canvas, self.plan, self.k, canvas.frames[place], place), middle, half)
         radius = self._free_radius(canvas)
         unread = {v.sign: (self.points[v.tail], self.points[v.head]) for v in named if not self._is_read(v, radius)}
-        canvas.labels[:] = [label for label in canvas.labels if label.part != self.part or label.text not in unread
-                            or distance(*unread[label.text], label.anchor) > ONE]
+        own = [label for label in canvas.labels if label.part == self.part and label.text in unread
+               and distance(*unread[label.text], label.anchor) <= ONE]
+        bundles = list[list[Label]]()
+        for label in sorted(own, key=lambda label: -abs(np.subtract(*unread[label.text]))):
+            if abs(label.anchor - self.centre) > radius:
+                same = next((one for one in bundles if distance(*unread[one[0].text], label.anchor) < CLEARLY), None)
+                if same is None:
+                    bundles.append(same := [])
+                same.append(label)
+        # Long vectors that run side by side have their names together, which is that of no single step.
+        names = [one[0]._replace(text=", ".join(label.text for label in one), by=None) for one in bundles if len(one) > 1]
+        canvas.labels[:] = [*(label for label in canvas.labels if label not in own), *names]
         _no_more_zero(canvas, self)
         return radius
 
@@ -421,19 +431,24 @@ class Crowd(Dense):
             return canvas.tracing("symbol") if by is None else \
                 canvas.tracing("symbol", by.step, by.position, frames.get(by.frame, -1), by.name)
 
-        self._enlarged(canvas, at, middle, half, of)
+        turning = self._enlarged(canvas, at, middle, half, of)
         canvas.labels[:] = [label for label in canvas.labels if label not in self.labels]
         for label in self.labels:
-            of(label.by).label(at(label.anchor), label.text, label.away, max(label.height, LETTERS), label.gap, label.leader,
-                               thin=label.thin)
+            arc = turning.get(label.by) if label.by is not None else None
+            anchor = at(label.anchor) if arc is None else label.anchor + at(arc.centre) - arc.centre
+            of(label.by).label(anchor, label.text, label.away, max(label.height, LETTERS), label.gap, label.leader, thin=label.thin)
         return half / times
 
     def _enlarged(self, canvas: Canvas, at: Callable[[complex], complex], middle: complex, half: float,
-                  of: Callable[[Provenance | None], Canvas]) -> None:
-        """Lines, arrows and dots of the scheme that are seen in the window; heads of forces and dots keep their sizes."""
+                  of: Callable[[Provenance | None], Canvas]) -> dict[Provenance | None, Arc]:
+        """Lines, arrows and dots of the scheme that are seen in the window; heads of forces and dots keep their sizes.
+
+        So do arrows of couples, whose sense would be cut away: gives their arcs on the scheme by what left them.
+        """
         end = canvas.parts[self.part + 1].first if self.part + 1 < len(canvas.parts) else len(canvas.marks)
         marks, first = canvas.marks[:end], canvas.parts[self.part].first
         drawn = {n for n, m in enumerate(marks[first:], first) if m.by is not None and m.by.role in ROLES}
+        turning = dict[Provenance | None, Arc]()
 
         def seen(a: complex, b: complex) -> tuple[complex, complex] | None:
             part = chord(middle, half, at(a), at(b))
@@ -455,14 +470,25 @@ class Crowd(Dense):
                     pen = of(line.by)
                     (pen.arrow if abs(part[1] - at(tip)) < 1e-9 else pen.line)(*part, fill.style)
                 drawn.difference_update(own)
+            elif group.kind == "arrow" and fill is not None and isinstance(line, Arc):
+                there = at(line.centre)
+                if abs(there - middle) < half - line.radius:
+                    turning[line.by] = line
+                    of(line.by).arc(there, line.radius, line.start, line.end, line.style)
+                    of(fill.by).fill(fill.points + (there - line.centre), fill.style)
+                    drawn.difference_update(own)
         for mark in (marks[n] for n in sorted(drawn)):
-            match mark:
-                case Line() if (part := seen(mark.a, mark.b)) is not None:
-                    of(mark.by).line(*part, mark.style)
-                case Arc() if whole(flat(mark, 1.0)):
-                    of(mark.by).arc(at(mark.centre), self.times(half) * mark.radius, mark.start, mark.end, mark.style)
-                case Fill() if whole(mark.points):
+            if isinstance(mark, Fill):
+                if whole(mark.points):
                     of(mark.by).fill([at(complex(z)) for z in mark.points], mark.style)
+            elif isinstance(mark, Arc) and whole(flat(mark, 1.0)):
+                of(mark.by).arc(at(mark.centre), self.times(half) * mark.radius, mark.start, mark.end, mark.style)
+            elif not isinstance(mark, Text):
+                # Outlines of symbols and hatching are about their step, not at it.
+                about = isinstance(mark, Polyline) or (mark.by is not None and mark.by.role == "hatch")
+                for part in filter(None, starmap(seen, pairwise(flat(mark, 1.0).tolist()))):
+                    of(None if about else mark.by).line(*part, mark.style)
+        return turning
 
 
 def _crowds(canvas: Canvas, polygons: Collection[int]) -> list[Crowd]:

@@ -119,10 +119,11 @@ def positions_reach(project: Project) -> tuple[Points, Points]:
         wide = 32.0 if any(g.kind.ram(g) and g.inner == name for g in m.groups) else 14.0
         reaches += [(step.value, offset) for offset in (wide, -wide, 8.0j, -11.0j if name in m.fixed else -9.0j)]
     for g in (g for g in m.groups if g.kind.ram(g)):
-        # Its body and the guide beside it lie along the guide, whichever way that runs.
+        # Its body lies along the guide, whichever way that runs, and in the analysed position the guide beside it.
         point, guide = next((point, guide) for point, guide in g.kind.guided(g) if point == g.inner)
-        body = (link_marks.RAM + 5.0) * complex(pos.guide_directions[guide].at(project.force_index))
-        reaches.append((complex(pos.points[point].at(project.force_index)), np.array([body, -body])))
+        step, half, k = pos.points[point], link_marks.RAM, project.force_index
+        u = complex(pos.guide_directions[guide].at(k))
+        reaches += [(at, way * u) for at, reach in ((step.value, half), (step.at(k), half + 5.0)) for way in (reach, -reach)]
     reaches += [(end.at, 1j) for ends in link_marks.free_ends(pos).values() for end in ends]
     reaches.append(diagrams.indicator_reach(project))
     z, d = zip(*(np.broadcast_arrays(np.ravel(at), offset) for at, offset in reaches), strict=True)

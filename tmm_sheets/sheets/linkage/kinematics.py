@@ -11,7 +11,7 @@ import numpy as np
 
 from tmm_sheets.construction.scale import Scale, handy, times
 from tmm_sheets.drawing import symbols
-from tmm_sheets.drawing.canvas import SMALLEST, Align, Canvas
+from tmm_sheets.drawing.canvas import SMALLEST, Align, Canvas, Label
 from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.ink_index import distance
 from tmm_sheets.drawing.lettering import letter, size_for
@@ -25,6 +25,7 @@ from tmm_sheets.sheets.player import SHORTEST, PlanFrame, PlayerStage, joined, p
 from tmm_sheets.words import tr, tr_in
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.methods.linkage.cycle import Cycle
     from tmm_sheets.methods.linkage.positions import Positions
@@ -133,9 +134,10 @@ def _position_numbers(project: Project, s: PlayerStage) -> None:
     """Numbers at the crank pin and the hinges, and at marks on the paths of sliders; with letters where paths are close."""
     pos, m = project.study.positions, project.mechanism
     sliding, paths = on_fixed_guides(m), list[Points]()
+    pivots = {shape.link: s.at(pos.points[name]) for shape in link_marks.shapes(pos) for name in shape.bar if name in m.fixed}
     for name in dict.fromkeys(_hinges(m, sliding)):
         z = np.ravel(s.frame(pos.points[name].value))
-        _hinge_numbers(project, s, name, s.at(m.crank.pivot) if name == m.crank.pin else z.mean() - 40j, _close(z, paths))
+        _hinge_numbers(project, s, name, pivots.get(m.owner(name), z.mean() - 40j), _close(z, paths))
         paths.append(z)
     on = list(sliding.values())
     for name, guide in sliding.items():
@@ -176,12 +178,14 @@ def _hinge_numbers(project: Project, s: PlayerStage, name: str, middle: complex,
 
     With the letter of the point where it is to be ``named``.
     """
+    blocks = [shape.block for shape in link_marks.shapes(project.study.positions)]
+    gap = 2.4 if name in blocks else 0.9  # beside the block, too
     for i, _ in project.cycle.drawn:
         here = s.position(i)
         if i != s.k:
             symbols.hinge(here.pen(name, "symbol"), here.at(name), "thin", 0.7)
             label = project.cycle.labels[i]
-            here.letters(name, _numbered(name, label) if named else label, here.at(name) - middle, 2.5, 0.9, leader=False)
+            here.letters(name, _numbered(name, label) if named else label, here.at(name) - middle, 2.5, gap, leader=False)
 
 
 def _upper_side(u: complex) -> complex:
@@ -203,14 +207,17 @@ def on_fixed_guides(m: Mechanism) -> dict[str, str]:
 def own_path(project: Project, s: PlayerStage, name: str, n: complex, *, whose: bool = False) -> None:
     """Marks of the only slider on a path: numbers of the working stroke on side ``n`` of it, of the idle one on the other.
 
-    They have its letter where others stand close (``whose``).
+    Where others stand close (``whose``) they have its letter, and only those at the ends: between others none can tell its mark.
     """
     cycle = project.cycle
     z = np.asarray(s.frame(project.study.positions.points[name].value))
     for i, _ in cycle.drawn:
         _path_mark(s.position(i), name, n)
-    for side, there in zip((n, -n), by_stroke(project, name, [i for i, _ in cycle.drawn if i != s.k]), strict=True):
-        for crowd in crowds(there, z):
+    strokes = by_stroke(project, name, [i for i, _ in cycle.drawn if i != s.k])
+    along = {i: (z[i] / n).imag for there in strokes for i in there}
+    ends = {pick(along, key=along.__getitem__) for pick in (min, max)} if whose else along.keys()
+    for side, there in zip((n, -n), strokes, strict=True):
+        for crowd in (crowd for crowd in crowds(there, z) if not ends.isdisjoint(crowd)):
             at = complex(sum(z[i] for i in crowd)) / len(crowd)
             said = graphs.ranged([cycle.labels[i] for i in crowd])
             s.position(crowd[0]).letters(name, _numbered(name, said) if whose else said, side, 2.5, 0.6, at + 2.0 * side, False)
@@ -238,7 +245,7 @@ def crowds(marks: list[int], z: Points) -> list[list[int]]:
     return found
 
 
-CROWDED = 2.8
+CROWDED = 3.6
 """Distance of two marks, mm, below which their numbers do not fit side by side."""
 
 
@@ -592,7 +599,9 @@ def _signed_plan(canvas: Canvas, box: Box, s: PlayerStage, pole: str) -> None:
 
 
 def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the second acceleration plan can do with, mm; none in which its vectors would be short or their signs crowd."""
+    """Places that the second acceleration plan can do with, mm; none in which its vectors would be short, or half as many of
+    their signs crowd as can just be read: nothing has to show it.
+    """
     plan, i = project.study.accelerations.plan, kinematic_frames.other_stroke(project)
     real = kinematic_frames.plan_extent(plan, i)
     left, below, right, above = kinematic_frames.ACCELERATIONS
@@ -602,9 +611,9 @@ def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[s
     # Wide enough for a title as the other plans have it, if there is room.
     titled = letter(kinematic_frames.title_of_accelerations(project, i), 5.0).width + 0.1
     places = [(size * real.width / longest + left + right + 12.0, size * real.height / longest + below + above + 10.0)
-              for size in (120.0, 100.0, 80.0)
+              for size in (160.0, 120.0, 100.0, 80.0)
               if kinematic_frames.longest(plan, [i]) >= VECTOR.least * handy(longest / size) * (1 - 1e-6)
-              and kinematic_frames.crowd(plan, i, handy(longest / size)) <= kinematic_frames.TOGETHER_READ]
+              and kinematic_frames.crowd(plan, i, handy(longest / size)) <= kinematic_frames.TOGETHER_READ / 2]
     return [(max(wide, least), high) for least in (titled, 76.0) for wide, high in places]
 
 
@@ -730,24 +739,23 @@ def _crowded(project: Project, canvas: Canvas) -> str | None:
     """The slider, alone on its path, whose marks share most numbers on the plans of this sheet; None where hardly any do."""
     if "positions" not in canvas.scales or PLANS not in {part.draw for part in canvas.parts}:
         return None
-    guides, drawn = on_fixed_guides(project.mechanism), [i for i, _ in project.cycle.drawn]
-    found: dict[str, int] = {}
-    for name, guide in guides.items():
-        z = np.asarray(project.study.positions.points[name].value) / canvas.scales["positions"].mu
-        if list(guides.values()).count(guide) == 1 and z.ndim:
-            shared = (crowd for marks in by_stroke(project, name, drawn) for crowd in crowds(marks, z))
-            found[name] = sum(len(crowd) - 1 for crowd in shared)
+    guides, points = on_fixed_guides(project.mechanism), project.study.positions.points
+    found = {name: len(project.cycle.drawn) - len(_numbers(canvas, points[name])) - 1 for name, guide in guides.items()
+             if list(guides.values()).count(guide) == 1 and np.ndim(points[name].value)}
     worst = max(found, key=lambda name: found[name], default=None)
     return worst if worst is not None and found[worst] >= SHARED else None
 
 
+def _numbers(canvas: Canvas, point: Step) -> list[Label]:
+    """Numbers that a point has on the position plans; its own letter is larger."""
+    part = next(k for k, part in enumerate(canvas.parts) if part.draw == PLANS and part.title)
+    return [label for label in canvas.labels if label.part == part and label.by is not None and label.by.step == point.path
+            and label.height < 3.5]
+
+
 def _thin_out(project: Project, canvas: Canvas, name: str) -> None:
     """Take the numbers off the path on the plans, but for those nearest to its ends."""
-    part = next(k for k, part in enumerate(canvas.parts) if part.draw == PLANS and part.title)
-    path, numbers = project.study.positions.points[name].path, set(project.cycle.labels)
-    asked = [label for label in canvas.labels if label.part == part and label.by is not None and label.by.step == path
-             and label.text[0] in {number[0] for number in numbers}]
-    along = _along(project, name)
+    asked, along = _numbers(canvas, project.study.positions.points[name]), _along(project, name)
     far = [(label.anchor / along).real for label in asked]
     ends = {asked[int(pick(far))] for pick in (np.argmin, np.argmax)} if asked else set()
     canvas.labels[:] = [label for label in canvas.labels if label not in asked or label in ends]

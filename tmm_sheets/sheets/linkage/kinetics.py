@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing import symbols
-from tmm_sheets.drawing.canvas import ARROW, KEPT_OFF, Align, Canvas
+from tmm_sheets.drawing.canvas import ARROW, KEPT_OFF, Canvas
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_layout import TOGETHER, wrapped
@@ -42,7 +41,6 @@ from tmm_sheets.sheets.linkage.kinetic_frames import (
     hinge_of,
     lever_scheme,
     loaded_plans,
-    normal_sign,
     on_crank,
     on_lever,
     outer_forces,
@@ -64,7 +62,6 @@ if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import StructuralGroup
     from tmm_sheets.methods.linkage.forces import Kinetostatics
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets.linkage.moments import Equations
 
 ALONG, SAME = 0.05, 0.01
 """Sine of the angle at which two sides of a polygon lie along each other; distance at which they meet, mm."""
@@ -144,9 +141,7 @@ def _scheme(project: Project, canvas: Canvas, box: Box, under: Box | None, g: St
     for c in couples:
         _turning(s, frame(c.at), 10.0, -1 - 0.4j, c)
     _link_couples(project, s, drawn)
-    low = _taken(box, frame, around, SCHEME)
-    if not _equations(canvas, low, under, moments.of_group(project, g)):
-        _from_moments(project, canvas, low, g, k, frame.scale)
+    _equations(canvas, _taken(box, frame, around, SCHEME), under, moments.of_group(project, g))
 
 
 def _taken(box: Box, frame: PlanFrame, around: tuple[list[complex], list[complex]], inset: tuple[float, ...]) -> Box:
@@ -154,9 +149,10 @@ def _taken(box: Box, frame: PlanFrame, around: tuple[list[complex], list[complex
     return box._replace(y0=max(box.y0, min((frame(z) + d).imag for z, d in zip(*around, strict=True)) - inset[1]))
 
 
-def _equations(canvas: Canvas, box: Box, under: Box | None, forms: Iterable[Equations], of: str = "moments") -> bool:
-    """Equations that are read from a view, in their place ``under`` what of its ``box`` it takes; False for no room."""
-    return under is not None and moments.draw(canvas, under.moved(1j * (box.y0 - UNDER - under.y1)), forms, of)
+def _equations(canvas: Canvas, box: Box, under: Box | None, texts: Iterable[list[str]], of: str = "moments") -> None:
+    """Equations that are read from a view, in what it leaves free ``under`` what of its ``box`` it takes."""
+    if under is not None and not moments.draw(canvas, under._replace(y1=box.y0 - UNDER), texts, of):
+        canvas.note(box, tr("{equations}: in the note").format(equations=tr(moments.TITLES[of])))
 
 
 def _link_couples(project: Project, s: PlayerStage, drawn: Iterable[link_marks.Shape]) -> None:
@@ -176,30 +172,6 @@ def _link_couples(project: Project, s: PlayerStage, drawn: Iterable[link_marks.S
 def _turning(s: PlayerStage, at: complex, radius: float, towards: complex, couple: Couple) -> None:
     """Arrow of a couple."""
     symbols.rotation_arrow(s.pen(couple.step, "symbol"), at, radius, towards, couple.value, couple.symbol)
-
-
-def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int, scale: Scale) -> None:
-    """What the moment equations of a group gave: tangential parts of its reactions, arms of its outer guides' reactions."""
-    forces, m = project.study.forces, project.mechanism
-    about = g.kind.about(g)
-    found = [(part.centre, f"F_{{{pair_index(part.link, part.source)}}}^τ", part.vector) for part in forces.from_moments
-             if part.link in g.links]
-    special = project.study.positions.special.get(about)
-    if special is not None and (normal := forces.about_special(special.step)) is not None:
-        found.append((f"{{{about}}}", normal_sign(project, special.third), normal))
-    said = [tr("ΣM_{centre} = 0: {force} = {value} N").format(
-                centre=centre, force=sign, value=newtons(clean(abs(complex(step.at(k))), forces.force_size(k))))
-            for centre, sign, step in found]
-    for pair in (pair_index(link, m.guides[guide].link) for guide in g.guides for link in g.links):
-        arm = forces.arms.get(f"h{pair}")
-        length = scale.mm(abs(float(arm.at(k)))) if arm is not None else np.inf
-        if 0.05 < length < max(box.width, box.height):
-            said.append(tr("ΣM_{centre} = 0: h_{{{index}}} = {value} mm").format(centre=about, index=pair, value=fixed(length, 1)))
-    said += [tr("ΣM_{centre} = 0: {couple} = {value} N·m").format(
-                 centre=about if len(about) == 1 else f"{{{about}}}", couple=couple.symbol, value=number(abs(couple.value), 5))
-             for couple in outer_forces(project, g, k)[1]]
-    if said:
-        _fitted(canvas, complex(box.centre.real, box.y0), "; ".join(said), 3.5, box.width - 4.0)
 
 
 def draw_forces(s: PlayerStage, shown: Iterable[Shown], share: float = 1.0) -> None:
@@ -253,7 +225,9 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     found = [tr("{quantity} = {value} N").format(quantity=sign.replace(BAR, ""),
                                                  value=newtons(clean(fp.plan.length(tail, head).at(k), size)))
              for sign, tail, head in asked]
-    frame, lines, height = _over_equation(project, canvas, box, fp, (terms(sides), found))
+    # A force that is nothing has its two numbers like any other, at one point.
+    found += [f"{side[0].replace(BAR, '')} = 0" for side in fp.sides if side not in sides]
+    frame, lines, height = _over_equation(project, canvas, box, fp, (terms(fp.sides), found))
     tiny = {(tail.name, head.name): tr("{quantity} = {value} N").format(
                 quantity=sign, value=newtons(fp.plan.length(tail, head).at(k))).replace(" ", TOGETHER)
             for sign, tail, head, _ in sides if abs(frame(head.at(k)) - frame(tail.at(k))) < SHORTEST}
@@ -368,18 +342,14 @@ def _broken(text: str, height: float, width: float, most: int) -> list[str]:
     return next((lines for lines in found if max(letter(line, height).width for line in lines) <= width), [])
 
 
-def _fitted(canvas: Canvas, at: complex, text: str, height: float, width: float, align: Align = "centre") -> None:
-    canvas.text(at, text, size_for([text], width, height), align)
-
-
 def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The initial link with its forces and arms beside its force plan."""
     k, study, c, driver = project.force_index, project.study, project.mechanism.crank, project.driver
     forces, pos = study.forces, study.positions
     plans = loaded_plans(project, [c.link])
     left, *places = options.get("places") or linkage_sizes.crank(project, ViewPlace("kinetics.crank", box, options)).parts(box)
-    forms = moments.of_crank(project)
-    under = places.pop(0) if forms else None
+    texts = moments.of_crank(project)
+    under = places.pop(0) if texts else None
     centre, pins = pos.points[c.pivot], [pos.points[name] for name in link_marks.crank_pins(pos)]
     pivot, ends = complex(centre.at(k)), [complex(pin.at(k)) for pin in pins]
     shown = on_crank(project, k)
@@ -405,29 +375,24 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         _turning(s, s.at(centre), 24.0, away, Couple(balancing_sign(project), 0j, float(moment.at(k)), moment))
     for line in (*jumps(project, [c.link]), *([] if plans else [tr("There are no forces in this position")])):
         canvas.note(left, line)
-    said = _crank_couples(project, s, s.at(centre), away)
+    said = "; ".join(_crank_couples(project, s, s.at(centre), away))
     low = _taken(left, frame, around, CRANK)
-    if not _equations(canvas, low, under, forms) and said:
-        _fitted(canvas, complex(low.centre.real, low.y0), "; ".join(said), 3.5, low.width - 4.0)
+    _equations(canvas, low, under, texts)
+    if not texts:
+        canvas.text(complex(low.centre.real, low.y0), said, size_for([said], low.width - 4.0, 3.5), "centre")
     for fp, place in zip(plans, places, strict=True):
         _force_plan(project, canvas, place, fp, k)
 
 
-def _crank_couples(project: Project, s: PlayerStage, at: complex, away: complex) -> list[str]:
-    """Couples on the crank, its inertia couple among them, as arrows; gives their values with that of the balancing moment."""
-    k, forces = project.force_index, project.study.forces
-    said = []
+def _crank_couples(project: Project, s: PlayerStage, at: complex, away: complex) -> Iterator[str]:
+    """Couples on the crank, its inertia couple among them, as arrows; gives their values."""
     for n, couple in couples_of(project, project.mechanism.crank.link):
         hinge = hinge_of(project, couple)
         if hinge is None:
             _turning(s, at, couple_radius(n), away, couple)
         else:
             _turning(s, s.at(hinge), 6.0, -away if s.at(hinge) == at else away, couple)
-        said.append(tr("{quantity} = {value} N·m").format(quantity=couple.symbol, value=number(abs(couple.value), 5)))
-    if project.driver is None and forces.balancing is not None and np.isfinite(value := float(project.study.balance["M"].at(k))):
-        moment = number(value, 5, forces.moment_size(k))
-        said.append(tr("{quantity} = {value} N·m").format(quantity=balancing_sign(project), value=moment))
-    return said
+        yield tr("{quantity} = {value} N·m").format(quantity=couple.symbol, value=number(abs(couple.value), 5))
 
 
 def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -458,9 +423,8 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         s.letters(lv.contact, lv.contact.name, gap=1.2)
     draw_arms(s, 0j, shown, points=[complex(s.at(step)) for step in lv.points.values()])
     draw_forces(s, shown)
-    low = _taken(box, frame, around, LEVER)
-    if under and not _equations(canvas, low, under[0], moments.at_scale(project, frame.scale), "moments of the lever"):
-        canvas.note(box, tr("Equation of the lever: in the note"))
+    _equations(canvas, _taken(box, frame, around, LEVER), next(iter(under), None), moments.at_scale(project, frame.scale),
+               "moments of the lever")
 
 
 def _turned_letters(s: PlayerStage, turned: PlayerStage, points: Mapping[str, Step], vectors: list[Segment]) -> None:

@@ -131,7 +131,7 @@ def group(project: Project, view: ViewPlace) -> BorderNode:
         return fixed(view.box)
     g = tuple(reversed(project.mechanism.groups))[nth - 1]
     plans = kinetic_frames.loaded_plans(project, g.kind.force_plans(g))
-    return _figure(project, view, kinetic_frames.scheme(project, g, k), kinetic_frames.SCHEME, (92.0, 80.0), (moments.of_group, g),
+    return _figure(project, view, kinetic_frames.scheme(project, g, k), kinetic_frames.SCHEME, (92.0, 64.0), (moments.of_group, g),
                    plans, float(view.options.get("scheme", 0.45)), (*kinetic_frames.crowd(project, g, k), OF_FORCE))
 
 
@@ -189,10 +189,9 @@ def _parted(box: Box, share: float, scheme: Need, plans: list[Need], under: Sequ
 def _force_plan(project: Project, fp: ForcePlan, k: int) -> Need:
     real = kinetic_frames.polygon(fp, k)[1]
     left, below, right, above = kinetic_frames.AROUND
-    sides = kinetic_frames.acting_sides(fp, k, project.study.forces.force_size(k))
-    parts = kinetic_frames.terms(sides)
+    parts = kinetic_frames.terms(fp.sides)
     half = " + ".join(parts[:(len(parts) + 1) // 2]) + " +"
-    asked = sum(side[3] for side in sides) + sum(not any(seg.symbol == side[0] for side in fp.sides) for seg in fp.plan.segments)
+    asked = sum(side[3] for side in fp.sides) + sum(not any(seg.symbol == side[0] for side in fp.sides) for seg in fp.plan.segments)
     wide = max(78.0, letter(half, 2.5).width + 8.0, OF_VALUE * asked + 6.0)
     return Need((real.width, real.height), (left + right, below + above), (wide, 56.0), finest=kinetic_frames.finest(fp, k))
 
@@ -201,7 +200,7 @@ def crank(project: Project, view: ViewPlace) -> BorderNode:
     """The crank with its force plan."""
     around = kinetic_frames.crank_scheme(project, project.force_index, kinetic_frames.on_crank(project, project.force_index))
     plans = kinetic_frames.loaded_plans(project, [project.mechanism.crank.link])
-    return _figure(project, view, around, kinetic_frames.CRANK, (76.0, 80.0), (moments.of_crank,), plans,
+    return _figure(project, view, around, kinetic_frames.CRANK, (76.0, 73.0), (moments.of_crank,), plans,
                    float(view.options.get("scheme", 0.5)), finest=kinetic_frames.finest_crank(project))
 
 

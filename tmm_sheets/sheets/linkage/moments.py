@@ -36,21 +36,12 @@ SENSE = marked("(“+”: in the sense of ω_1)")
 """What is said of a balancing moment's sign."""
 WIDTHS = (inf, 210.0, 165.0, 130.0, 105.0, 88.0)
 """Widths at which equations are broken, mm."""
-LETTERS = ((3.5, 6.0, 1.0), (2.5, 4.5, 2.4))
-"""Heights of their letters, distances of their lines that are tried, mm, and what a figure over them counts for."""
+LETTERS = ((3.5, 6.0), (2.5, 4.5))
+"""Heights of their letters and distances of their lines that are tried, mm; room is made for the first."""
+EDGES = 6.0
+"""What a place has beside them, both sides together, mm."""
 FEWER = 1.2
-"""The same of every text that says less."""
-
-
-class Equations(NamedTuple):
-    """Equations in a form that a place may have room for: their lines and letters, and what of a place they need."""
-
-    form: Form
-    needed: Needed
-
-    def fit(self, box: Box) -> bool:
-        """Whether they have room in a place."""
-        return self.needed.width <= box.width + 1e-6 and self.needed.height <= box.height + 1e-6
+"""What a figure over every text that says less counts for."""
 
 
 class Term(NamedTuple):
@@ -62,80 +53,81 @@ class Term(NamedTuple):
 
 
 @once
-def of_group(project: Project, g: StructuralGroup) -> list[Equations]:
-    """Equations of a group, with those of its guides' reactions if there is room; rather without these than in small letters."""
-    return [*_forms([[*_of_group(project, g, guides)] for guides in ((True, False) if g.guides else (False,))])]
+def of_group(project: Project, g: StructuralGroup) -> list[list[str]]:
+    """Equations of a group, with those of its guides' reactions if there is room; none for a group without any."""
+    return _some(_of_group(project, g, guides) for guides in ((True, False) if g.guides else (False,)))
 
 
 @once
-def of_crank(project: Project) -> list[Equations]:
+def of_crank(project: Project) -> list[list[str]]:
     """The equation that gives the balancing moment."""
-    return [*_forms([[*_of_crank(project)]])]
+    return _some([_of_crank(project)])
 
 
 @once
-def of_lever(project: Project) -> list[Equations]:
-    """The equation of the lever, rather in numbers alone than in small letters; its arms about as they will be."""
+def of_lever(project: Project) -> list[list[str]]:
+    """The equation of the lever, every other of its arms with a digit more than it has at a usual size."""
     points = extent([complex(step.at(project.force_index)) for step in project.study.lever.points.values()])
-    return [*at_scale(project, Scale("μ_V", max(points.width, points.height) / USUAL or 1.0, ""))]
+    texts = at_scale(project, Scale("μ_V", max(points.width, points.height) / USUAL or 1.0, ""))
+    return [[letters, numbers + "0" * (numbers.count("·") // 2), *more] for letters, numbers, *more in texts]
 
 
-def at_scale(project: Project, scale: Scale) -> Iterator[Equations]:
+def at_scale(project: Project, scale: Scale) -> list[list[str]]:
     """The same at the scale factor of the lever."""
-    every = _lever_lines(project, scale)
-    return _forms([every, every[1:]])
+    return _some([_lever_lines(project, scale)])
 
 
-USUAL = 110.0
-"""Size of a lever for whose arms room is reserved, mm: larger ones have a digit more."""
+def _some(texts: Iterable[Iterable[str]]) -> list[list[str]]:
+    """The texts that say anything."""
+    return [lines for text in texts if (lines := [*text])]
+
+
+USUAL = 80.0
+"""Size of a lever for whose arms room is reserved, mm."""
 
 
 TITLES = {"moments": marked("Equations of moments"), "moments of the lever": marked("Equation of the lever")}
 """What the equations of a plan are called in the files."""
 
 
-def room(project: Project, of: Callable[..., list[Equations]], *about: Any) -> list[Needed]:
+def room(project: Project, of: Callable[..., list[list[str]]], *about: Any) -> list[Needed]:
     """What equations need of a place in the language of most sheets: scale factors must not depend on words."""
     of(project, *about)  # steps that are made for them speak the language of the paper
+    height, step = LETTERS[0]
     with on_paper(SHEETS):
-        return [one.needed for one in of(project, *about)]
+        # Each equation in one line, then broken: rather a text that says less than smaller letters.
+        parts = ([part for line in lines for part in broken(line, width, height)] + [n]
+                 for n, lines in enumerate(of(project, *about)) for width in WIDTHS)
+        return [Needed(*Form([lines], height, step, 0.0).size, FEWER ** n) for *lines, n in dict.fromkeys(map(tuple, parts))]
 
 
-def _forms(texts: Sequence[list[str]]) -> Iterator[Equations]:
-    """Each equation in one line, then broken, then in small letters."""
-    last, wide = list[str](), inf
-    for (height, step, price), (n, lines), width in product(LETTERS, enumerate(texts), WIDTHS):
-        # What has room as it was broken last is broken no further.
-        parts = last if wide <= width < inf else [part for line in lines for part in broken(line, width, height)]
-        if parts and parts != last:
-            form, last = Form([parts], height, step, 0.0), parts
-            wide = form.size[0] - 6.0
-            yield Equations(form, Needed(*form.size, price * FEWER ** n))
-
-
-def draw(canvas: Canvas, box: Box, forms: Iterable[Equations], of: str) -> bool:
-    """Write equations in a place under their view, in the first of the forms that it has room for; False for none."""
-    form = next((one.form for one in forms if one.fit(box)), None)
-    if form is None:
-        return False
-    canvas.begin(box, tr(TITLES[of]))
-    canvas.of = of
-    at = complex(box.centre.real - form.size[0] / 2 + 3.0, box.y1 - 0.8 * form.pitch)
-    canvas.lines(at, form.columns[0], form.pitch, form.height)
-    return True
+def draw(canvas: Canvas, box: Box, texts: Iterable[list[str]], of: str) -> bool:
+    """Write equations in a place under their view, the first of the texts that it has room for; False for none."""
+    for (height, step), lines in product(LETTERS, texts):
+        form = Form([[part for line in lines for part in broken(line, box.width - EDGES, height)]], height, step, 0.0)
+        if form.size[0] <= box.width + 1e-6 and form.size[1] <= box.height + 1e-6:
+            canvas.begin(box, tr(TITLES[of]))
+            canvas.of = of
+            at = complex(box.centre.real - form.size[0] / 2 + EDGES / 2, box.y1 - 0.8 * form.pitch)
+            canvas.lines(at, form.columns[0], form.pitch, form.height)
+            return True
+    return False
 
 
 def _of_group(project: Project, g: StructuralGroup, guides: bool = False) -> Iterator[str]:
     """Equations of moments that give parts of a group's reactions: letters, then numbers."""
     k, forces, pos = project.force_index, project.study.forces, project.study.positions
-    for part in forces.from_moments:
-        if part.link in g.links:
-            total, centre, at = part.vector.args
-            sign, arm = f"F_{{{pair_index(part.link, part.source)}}}^τ", f"l_{{{part.at}{part.centre}}}"
-            length = float(forces.positions.plan.length(centre, at).at(k))
-            # The scheme of a class III group shows the arms about its special point: others say what they are about.
-            about = "" if g.kind.grade == 2 else f"^{part.centre}"
-            yield from _solved(project, indexed(part.centre), total, (sign, arm, length), part.vector, about)
+    parts = [part for part in forces.from_moments if part.link in g.links]
+    for part in parts:
+        total, centre, at = part.vector.args
+        sign, arm = f"F_{{{pair_index(part.link, part.source)}}}^τ", f"l_{{{part.at}{part.centre}}}"
+        length = float(forces.positions.plan.length(centre, at).at(k))
+        # The scheme of a class III group shows the arms about its special point: others say what they are about.
+        about = "" if g.kind.grade == 2 else f"^{part.centre}"
+        # Sums of the moments on two links about their common hinge are told apart by the link.
+        several = sum(other.centre == part.centre for other in parts) > 1
+        name = f"{{{part.centre}({part.link})}}" if several else indexed(part.centre)
+        yield from _solved(project, name, total, (sign, arm, length), part.vector, about)
     if guides:
         yield from _guided(project, g)
     if (about := g.kind.about(g)) in pos.special:
