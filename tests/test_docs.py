@@ -272,7 +272,7 @@ LONG = ("note", "--lang uk", "page my.toml --sheet", "--list", "roster", "optimi
         "--json record.json", "record lugansk/shaper --sheet", "--marks", "--window", "--preview", "--supervisor", "--paper A3")
 """Commands of docs/ that are run in a trial only, by what they have in them."""
 SHORTER = {"stress": ("--cases", "3"), "--summary": ("--quick",), "build --all": ("--sheet", "2", "--format", "svg"),
-           "--supervisor": ("--sheet", "1"), **dict.fromkeys(
+           "--supervisor": ("--sheet", "1"), "defence": ("--sheet", "4"), **dict.fromkeys(
                ("plot ", "page my.toml -o", "build lugansk/shaper --student",
                "png", "--paper", "--portrait", "--one-file", "--text strokes", "--explain"), ("--sheet", "4"))}
 """Options with which a command is run that takes long as it stands, by what it has in it."""

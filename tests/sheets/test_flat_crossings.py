@@ -268,6 +268,7 @@ def test_the_warning_stands_free_in_its_view(composed):
         assert words.distance(other) > 0.5, mark
 
 
+@pytest.mark.trial
 def test_a_press_of_the_family_gets_two():
     """Knee press by cipher: coupler and rocker, then rocker and rod come near to one line on the idle stroke."""
     name = "transport/press@04-ЭПС-882"
@@ -327,6 +328,7 @@ def test_condition_in_the_results(capsys):
     assert [(k, len(v)) for k, v in tree["condition"].items()] == [("velocities", 7)]
 
 
+@pytest.mark.trial
 def test_the_position_advised_is_better():
     """The loom's point d: 2.6 mm at the nearest steep position, 1.9 where it is warned of."""
     told = " ".join(g.text for g in sheet.composed(Project(catalogue.read("loom")), 1).groups if g.kind == "lettering")

@@ -19,7 +19,7 @@ def lettering(name, n):
     return [("".join(m.text for m in of), max(m.height for m in of), of[0].of) for of in runs if of]
 
 
-@pytest.mark.parametrize(("name", "n"), [seldom("transport/compressor@09-В-5", 1), ("lugansk/shaper", 1), ("screen", 2)])
+@pytest.mark.parametrize(("name", "n"), [seldom("transport/compressor@09-В-5", 1), ("lugansk/shaper", 1), seldom("screen", 2)])
 def test_the_equation_of_a_force_plan_and_its_values_are_of_one_height(name, n):
     found = {}
     for text, height, of in lettering(name, n):

@@ -81,15 +81,15 @@ class Placement(NamedTuple):
 
 
 
-def set_labels(canvas: Canvas, ink: InkIndex) -> list[Crowded]:
+def set_labels(canvas: Canvas, ink: InkIndex, final: bool = True) -> list[Crowded]:
     """Set every requested label of a canvas on its ``ink``, to which they come; returns those that found no free place.
 
-    What meets a leader that was set after it gets another place when all the others have theirs.
+    What meets a leader that was set after it gets another place when all the others have theirs, unless this is not ``final``.
     """
     first = len(canvas.marks)
     placed = PlacedLabels(ink, canvas.labels, [part.box for part in canvas.parts])
     placed.place_all()
-    for around in (USUAL, CLOSER):
+    for around in (USUAL, CLOSER) if final else ():
         if placed.improve_all(around):  # what makes way may let others stand better
             placed.improve_all(around)
     for label, box, *_ in placed.at:

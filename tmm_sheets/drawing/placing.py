@@ -148,16 +148,18 @@ def even(canvas: Canvas, numbers: Sequence[AxisNumber]) -> None:
                 canvas.marks[number.mark] = mark._replace(at=mark.at + complex(aside * (wide - narrow), down), height=least)
 
 
-def place(canvas: Canvas, area: Box) -> list[Crowded]:
-    """Set all that a canvas asks for inside ``area``, as a part of its own; returns what found no free place."""
+def place(canvas: Canvas, area: Box, final: bool = True) -> list[Crowded]:
+    """Set all that a canvas asks for inside ``area``, as a part of its own; returns what found no free place.
+
+    Unless this is ``final`` no label makes room for another.
+    """
     ink = InkIndex(canvas.marks, area, canvas.windows)
     numbers = list(canvas.numbers)
     set_numbers(canvas, ink)
     even(canvas, numbers)
     canvas.begin(area, "", "labels")
-    crowded = labels.set_labels(canvas, ink)
+    crowded = labels.set_labels(canvas, ink, final)
     if canvas.notes:
-
         crowded += set_notes(canvas, ink)
     interrupt(canvas)
     return crowded

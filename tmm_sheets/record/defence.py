@@ -211,5 +211,5 @@ def overlay(composed: Composed, book: StepIndex, asked: list[Question]) -> Drawi
                 and ordinates[mark.by[1:3]] == 1:  # more are projections
             canvas.tracing(*mark.by).label(mark.b, fixed(abs(mark.b - mark.a), 1), mark.b - mark.a, SMALL)
     canvas.polyline(A1.frame.corners, "thin", closed=True)
-    place(canvas, A1.frame)
+    place(canvas, A1.frame, final=False)  # on clear paper a letter may touch a line of the sheet below
     return Drawing(drawing.width, drawing.height, drawing.title, tuple(canvas.marks[len(drawing.marks):]))
