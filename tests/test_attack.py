@@ -7,7 +7,7 @@ import tomllib
 
 import pytest
 
-from tests.attack import DOORS, FAULTS, entered
+from tests.attack import DOORS, FAULTS, SHARES, entered
 from tests.few import few
 from tests.odd_projects import SMALL, SOURCES, case, fallen
 from tests.project_files import EVEN, FLYWHEEL, FORCE, GEAR, MASS, MOMENT, SLIDER, WORKING, from_file, project, read
@@ -29,7 +29,7 @@ def test_nothing_falls_over(n):
 def test_no_door_falls_in(door, tmp_path, monkeypatch):
     """Some of the cases of ``python -m tests.attack``; those with a process of their own take long."""
     monkeypatch.chdir(tmp_path)
-    assert {entered(door, n) for n in range(1 if door in FAULTS else 3 if door == "project files" else 20)} <= {"done", "refused"}
+    assert {entered(door, n) for n in range(1 if door in FAULTS else 4 if door in SHARES else 20)} <= {"done", "refused"}
 
 
 @pytest.mark.parametrize(

@@ -83,7 +83,7 @@ LIBRARIES = {
     "ezdxf": "backends.dxf backends.dxf_frame_making compare.cad.cad_file compare.overlays",
     "reportlab": "backends.pdf compare.report_pages",
     "matplotlib": "backends.png lab.bench.records optimising.optimum",
-    "pydantic": "task.values task.schema task.messages task.variant task.title_entries task.keys "
+    "pydantic": "api task.values task.schema task.messages task.variant task.title_entries task.keys "
                 "task.family_folder task.family_tables compare.group compare.placing",
     "pydantic_core": "task.messages task.keys task.schema", "cv2": "compare.photo", "pypdfium2": "compare.photo",
     "shapely": "drawing sheets methods lab.bench compare",

@@ -31,7 +31,8 @@ def project(name):
     machine, c, *over = PROJECTS[name]
     found = reducer(cases.column(machine, c, **(over[0] if over else {})))
     section = GearTable(teeth="reducer", shift="rule", pressure_angle="20 deg", profile="rack")
-    return SimpleNamespace(reducer=found, gear=gear_pair(settled(section, found)), variant=SimpleNamespace(train=None, gear=section))
+    variant = SimpleNamespace(train=None, gear=section)
+    return SimpleNamespace(reducer=found, gear=gear_pair(settled(section, found)), variant=variant)
 
 
 PROJECTS = {

@@ -37,8 +37,9 @@ def test_the_plans_keep_the_numbers_at_the_ends_of_the_path(sheet):
     (part,) = (part for part in sheet.parts if part.draw == kinematics.PLANS and part.title)
     (enlarged,) = (part for part in sheet.parts if part.draw == VIEW and part.title)
     there = numbers(sheet, part.box)
-    for text in numbers(sheet, enlarged.box):  # it may stand in the corner of the plans
-        there.remove(text)
+    if part.box.contains(enlarged.box.centre):  # it may stand in the corner of the plans
+        for text in numbers(sheet, enlarged.box):
+            there.remove(text)
     assert 1 <= len(there) <= 2
 
 

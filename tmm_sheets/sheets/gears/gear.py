@@ -16,7 +16,6 @@ from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.drawing.marks import Box, Dimension
-from tmm_sheets.methods.gears.gear_formulas import GIVEN_DISTANCE
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.components.listed import Form, Formulas
@@ -415,6 +414,6 @@ def equations(plan: Plan, names: Iterable[str], letters: bool) -> Iterator[str]:
         least = _decimals(of) if isinstance(of, Step) else 0
         return Quantity(symbol, value, unit, digits_for(value, least), least) if least else Quantity(symbol, value, unit)
 
-    for step in (plan[name] for name in names if name in plan and plan[name].rule is not GIVEN_DISTANCE):
+    for step in (plan[name] for name in names if name in plan and plan[name].rule.name != "given centre distance"):
         if said := of_step(step, in_letters=letters, quantity=quantity):
             yield said

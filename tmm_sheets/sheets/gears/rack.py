@@ -35,8 +35,8 @@ NAMED = 36.0, 6.0, 12.0
 """Distance of the names of the rack's lines from the window's side, from one another, and the least from the side, mm."""
 USUAL, MOST = 1.6, 2.2
 """How far the window goes under the pole, in what must be seen there: without the wheel's centre, and with it at the most."""
-NUMBERED = 0.6
-"""Modules that the flanks with numbers reach beyond the tip circle at most."""
+NUMBERED = 18.0, 4.0
+"""How far the flanks with numbers and those without reach beyond the tip circle, mm."""
 BELOW = 0.5
 """Modules of the wheel's body under its root circle that the window must show at least."""
 
@@ -146,7 +146,7 @@ class _RackPicture:
             placed = rack.placed(half, np.angle(along / 1j))
             start, flank = plan["F"].value[k], plan["flank"].value[k]
             # A flank that leaves the teeth need not be followed any further; those with numbers stand out of the others.
-            outside = self.wheel.ra + (0.1 if k % 2 else NUMBERED) * self.gear.m
+            outside = self.wheel.ra + self.at.scale.real(NUMBERED[k % 2])
             foot = (start * np.conj(flank)).real
             placed[0] = start + flank * (np.sqrt(outside**2 - abs(start - foot * flank) ** 2) - foot)
             placed = self.at(placed)

@@ -245,7 +245,7 @@ def crowds(marks: list[int], z: Points) -> list[list[int]]:
     return found
 
 
-CROWDED = 3.6
+CROWDED = 2.8
 """Distance of two marks, mm, below which their numbers do not fit side by side."""
 
 
@@ -599,9 +599,7 @@ def _signed_plan(canvas: Canvas, box: Box, s: PlayerStage, pole: str) -> None:
 
 
 def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the second acceleration plan can do with, mm; none in which its vectors would be short, or half as many of
-    their signs crowd as can just be read: nothing has to show it.
-    """
+    """Places that the second acceleration plan can do with, mm; none in which its vectors would be short or their signs crowd."""
     plan, i = project.study.accelerations.plan, kinematic_frames.other_stroke(project)
     real = kinematic_frames.plan_extent(plan, i)
     left, below, right, above = kinematic_frames.ACCELERATIONS
@@ -613,7 +611,7 @@ def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[s
     places = [(size * real.width / longest + left + right + 12.0, size * real.height / longest + below + above + 10.0)
               for size in (160.0, 120.0, 100.0, 80.0)
               if kinematic_frames.longest(plan, [i]) >= VECTOR.least * handy(longest / size) * (1 - 1e-6)
-              and kinematic_frames.crowd(plan, i, handy(longest / size)) <= kinematic_frames.TOGETHER_READ / 2]
+              and kinematic_frames.crowd(plan, i, handy(longest / size)) <= kinematic_frames.TOGETHER_READ]
     return [(max(wide, least), high) for least in (titled, 76.0) for wide, high in places]
 
 

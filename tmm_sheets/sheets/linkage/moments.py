@@ -96,9 +96,9 @@ def room(project: Project, of: Callable[..., list[list[str]]], *about: Any) -> l
     height, step = LETTERS[0]
     with on_paper(SHEETS):
         # Each equation in one line, then broken: rather a text that says less than smaller letters.
-        parts = ([part for line in lines for part in broken(line, width, height)] + [n]
+        parts = ((n, tuple(part for line in lines for part in broken(line, width, height)))
                  for n, lines in enumerate(of(project, *about)) for width in WIDTHS)
-        return [Needed(*Form([lines], height, step, 0.0).size, FEWER ** n) for *lines, n in dict.fromkeys(map(tuple, parts))]
+        return [Needed(*Form([[*lines]], height, step, 0.0).size, FEWER ** n) for n, lines in dict.fromkeys(parts)]
 
 
 def draw(canvas: Canvas, box: Box, texts: Iterable[list[str]], of: str) -> bool:
