@@ -19,10 +19,6 @@ function atLeisure(work, act) {
 
 const isLoad = (g) => /^(force|moment)\[/.test(g.name), isTable = (g) => /\.tables?(\[\d+\])?$/.test(g.name);
 
-function sizeOfAll() {
-  return Math.max(...record.motion.givens.filter((g) => g.unit === "m").flatMap((g) => [g.value].flat().map(Math.abs)), 0.01);
-}
-
 const LOOKS = 180, PARTS = 4, HALVES = 5, TIMES = 3;
 
 // Whether all points have a place at some angles of the turn, a few angles a piece.
@@ -53,7 +49,8 @@ function* reachOf(own, far, put) {
 // Where a slider ends: at limits of the schema, and of what assembles with the project's other numbers.
 function limitsOf(g, i) {
   const own = i === null ? g.value : g.value[i], moves = g.unit === "m" || g.unit === "rad";
-  const wide = g.unit === "rad" ? Math.PI / 2 : i !== null || own === 0 ? sizeOfAll() / 2 : Math.abs(own) * (TIMES - 1);
+  const longest = Math.max(...record.motion.givens.filter(({ unit }) => unit === "m").flatMap(({ value }) => [value].flat().map(Math.abs)), 0.01);
+  const wide = g.unit === "rad" ? Math.PI / 2 : i !== null || own === 0 ? longest / 2 : Math.abs(own) * (TIMES - 1);
   const low = Math.max(own - wide, g.low ?? (moves ? -Infinity : 0)), high = Math.min(own + wide, g.high ?? Infinity);
   const put = (x) => ({ ...machine.made, [g.name]: i === null ? x : g.value.map((v, k) => (k === i ? x : v)) });
   const ends = function* () { return moves && (yield* assembles(machine.made)) ? [yield* reachOf(own, low, put), yield* reachOf(own, high, put)] : [low, high]; };

@@ -38,9 +38,7 @@ function modesOn(legs) {
     }
   }
   const unique = [];
-  for (const [k, u] of found) {
-    if (!Number.isNaN(k[0]) && unique.every(([a, b]) => size(sub(k, a)) + whole * size(sub(u, b)) > 1e-7 * whole)) unique.push([k, u]);
-  }
+  for (const [k, u] of found) if (!Number.isNaN(k[0]) && unique.every(([a, b]) => size(sub(k, a)) + whole * size(sub(u, b)) > 1e-7 * whole)) unique.push([k, u]);
   return unique.sort((a, b) => mod(Math.atan2(a[1][1], a[1][0]), TURN) - mod(Math.atan2(b[1][1], b[1][0]), TURN));
 }
 
@@ -97,7 +95,7 @@ const NO_COURSE = { angles: [0, TURN], places: [NOWHERE, NOWHERE], directions: [
 
 // Where a triangle stands all round the turn, in the way of assembly whose direction is nearest to the one told at an angle.
 function courseOf(legsAt, at, near) {
-  const found = modesOn(legsAt(at)), away = ([, u]) => { const z = mul(u, cis(-near)); return Math.abs(Math.atan2(z[1], z[0])); };
+  const found = modesOn(legsAt(at)), away = (/** @type {any[]} */ [, u]) => { const z = mul(u, cis(-near)); return Math.abs(Math.atan2(z[1], z[0])); };
   if (!found.length) return NO_COURSE;
   const taken = found.reduce((a, b) => (away(b) < away(a) ? b : a));
   const apart = (u) => { const z = mul(u, conj(taken[1])); return Math.abs(Math.atan2(z[1], z[0])); };

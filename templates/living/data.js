@@ -20,10 +20,7 @@ function takeRecord(found) {
 }
 
 // What is told at a position, or of all of them together.
-function at(told, label) {
-  if (!told) return undefined;
-  return told[label] ?? told[""] ?? Object.values(told)[0];
-}
+const at = (told, label) => told?.[label] ?? told?.[""] ?? Object.values(told ?? {})[0];
 
 // A step's value in a numbered position, by its label, or at a crank angle of the linkage as it is now, rad.
 function valueOf(id, when) {

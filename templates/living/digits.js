@@ -57,8 +57,7 @@ function angleOf(x, y) {
 function direction(angle) {
   const quarter = angle / (Math.PI / 2);
   if (quarter !== Math.round(quarter)) return [many(angle), ...cosSin(many(angle))];
-  const [cos, sin] = [[1, 0], [0, 1], [-1, 0], [0, -1]][((quarter % 4) + 4) % 4];
-  return [(BigInt(quarter) * PI) / 2n, many(cos), many(sin)];
+  return [(BigInt(quarter) * PI) / 2n, ...unit(angle).map(many)];
 }
 
 // --- unevaluated sums of two doubles ----------------------------------------------------------------------------------
@@ -75,15 +74,8 @@ function half(angle, other, sign) {
 
 const sine = (/** @type {any[]} */ [x, rest]) => Math.sin(x) + rest * Math.cos(x);
 
-const bits = new DataView(new ArrayBuffer(8));
-
-function spacing(x) {
-  bits.setFloat64(0, Math.abs(x));
-  bits.setBigInt64(0, bits.getBigInt64(0) + 1n);
-  return bits.getFloat64(0) - Math.abs(x);
-}
-
-const atRest = (phi) => 1e-14 + 4 * spacing(phi);
+// Angles nearer than this are one: some spacings of doubles.
+const atRest = (phi) => 1e-14 + 4 * 2 ** (Math.floor(Math.log2(Math.abs(phi))) - 52);
 
 // --- a + b cos(phi - start), b >= 0 ------------------------------------------------------------------------------------
 

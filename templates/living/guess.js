@@ -54,7 +54,7 @@ function judgedLine(stop, way, others) {
 function judgedVector(stop, { way, long }, others) {
   const { placed, vector } = planNow(), exact = vector(stop.ends), whole = size(exact), off = whole > NOTHING ? between(way, exact) : 0, deg = off.toFixed(0);
   const found = (key, values = {}) => ({ right: key === "right", key, values: { deg, rate: stop.rate && calledHere(stop.rate), line: stop.name && indexed(stop.name), ...values } });
-  if (whole <= NOTHING) return long < POINT ? found("right", { mm: Math.abs(long - whole).toFixed(0) }) : found("zero", { why: whyZero(stop) });
+  if (whole <= NOTHING) return long < POINT ? found("right", { mm: Math.abs(long - whole).toFixed(0) }) : found("zero", { why: `${calledHere(stop.rate ?? stop.force ?? stop.step)} = 0${stop.twice ? ` / V<sub>${indexed(stop.name)}</sub> = 0` : ""}` });
   if (off <= (long < SHORT ? BY_EYE.short : BY_EYE.vector)) {
     const mm = Math.abs(long - whole);
     return mm <= Math.max(BY_EYE.mm, BY_EYE.share * whole) ? found("right", { mm: mm.toFixed(0) }) : found(...wrongSize(stop, long, whole, others));
@@ -71,8 +71,6 @@ function judgedVector(stop, { way, long }, others) {
   } else if (betweenLines(way, wayOfStop(stop, placed)) <= TOWARDS) return found(stop.twice ? "not turned" : "rotation along");
   return other ? found("other link", { other: indexed(other.name) }) : found("off");
 }
-
-const whyZero = (stop) => (stop.rate ? `${calledHere(stop.rate)} = 0${stop.twice ? ` / V<sub>${indexed(stop.name)}</sub> = 0` : ""}` : `${calledHere(stop.force ?? stop.step)} = 0`);
 
 // A vector of the right direction: which of the numbers that it is made of was another one.
 function wrongSize(stop, long, whole, others) {

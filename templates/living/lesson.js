@@ -236,8 +236,9 @@ function drawOver(t) {
   if (!stop || lesson.asks) return;
   const source = isNothing(stop) ? null : sourceOf(stop, placers);
   if (source) stroke(lesson.cards[0], "glow", source);
-  const rate = stop.kind === "rate" ? t === 1 && stop.step : stop.rate, sense = rate ? Math.sign(here(rate)) : 0, card = lesson.cards[0], about = sense && centreOf(stop, rate);
-  if (about) {
+  const rate = stop.kind === "rate" ? t === 1 && stop.step : stop.rate, sense = rate ? Math.sign(here(rate)) : 0, card = lesson.cards[0];
+  const gives = record.lessons.flatMap((one) => one.stops).find((one) => one.kind === "rate" && one.step === rate), about = gives?.along[0] ?? (stop.twice ? null : stop.along?.[0]); // hinge of its link
+  if (sense && about) {
     const centre = placers[0].point(card.marks[0], about), from = sense > 0 ? -0.6 : Math.PI + 0.6, points = spread(from, from + sense * 2.4, 17).map((angle) => step(centre, 8, cis(angle)));
     stroke(card, "turning", points);
     arrow(card, "turning", points[15], points[16]);
@@ -250,12 +251,6 @@ function drawOver(t) {
   }
   if (t < 1 && source) fly(stop, source, placers[1], t);
   if (t === 1) tagAt(stop, placers[1]);
-}
-
-// The hinge of the mechanism that a link with a rate of turning turns about.
-function centreOf(stop, rate) {
-  const gives = record.lessons.flatMap((one) => one.stops).find((one) => one.kind === "rate" && one.step === rate);
-  return gives?.along[0] ?? (stop.twice ? null : stop.along[0]);
 }
 
 // A letter with its index over a card, at the place of some that covers least.

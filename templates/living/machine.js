@@ -20,7 +20,7 @@ const found = () => (machine.found?.given === machine.given ? machine.found : (m
 const isMade = (given) => Object.entries(machine.made).every(([name, value]) => given[name] === value);
 
 // Parts of the results of a program at a crank angle, with what is found of the searches up to now.
-function run({ program, inputs, constants }, phi, { given, start, courses, loads }, assumed = []) {
+function run({ program, inputs, constants }, phi, { given, start, courses, loads, wheel = /** @type {any} */ (null) }, assumed = []) {
   const turned = record.motion.sense * (phi - start);
   return program(inputs.map((input) => {
     if (input.given !== undefined) return given[input.given];
@@ -28,6 +28,7 @@ function run({ program, inputs, constants }, phi, { given, start, courses, loads
     if (input.course !== undefined) return (courses[input.course] ?? NO_COURSE)[input.row];
     if (input.load !== undefined) return loads[input.load] ? rowOf(loads[input.load], input, turned) : NaN;
     if (input.friction !== undefined) return assumed[input.friction] ?? 0;
+    if (input.wheel !== undefined) return wheel?.[input.wheel] ?? NaN;
     if (input.diagram !== undefined) return curveOf(input, given[input.diagram]);
     // What plans found that the page does not have holds for the project's own numbers alone.
     return isMade(given) ? input.found : NaN;

@@ -63,10 +63,10 @@ async function start() {
   $("record").remove();
   for (const sheet of record.sheets) sheet.plans = new Set(sheet.frames.map((f) => f.plan));
   startMachine();
-  const tab = (attributes, text, act) => node("button", { type: "button", role: "tab", ...attributes, onclick: act }, text);
-  $("tabs").append(...record.sheets.map((s) => tab({ "data-tab": s.sheet }, say("sheet {n}", { n: s.sheet }), () => openTab("draw", s.sheet))));
-  if (record.motion && record.sheets.some((s) => s.live?.length)) $("tabs").append(tab({ "data-tab": "turn" }, say("in motion"), () => openTab("turn")));
-  if (record.lessons?.length) $("tabs").append(tab({ "data-tab": "lesson" }, say("lesson"), () => openTab("lesson", lesson.told?.plan ?? (record.lessons[1] ?? record.lessons[0]).plan, lesson.at)));
+  const tab = (name, text, act) => button(text, act, { role: "tab", "data-tab": name });
+  $("tabs").append(...record.sheets.map((s) => tab(s.sheet, say("sheet {n}", { n: s.sheet }), () => openTab("draw", s.sheet))));
+  if (record.motion && record.sheets.some((s) => s.live?.length)) $("tabs").append(tab("turn", say("in motion"), () => openTab("turn")));
+  if (record.lessons?.length) $("tabs").append(tab("lesson", say("lesson"), () => openTab("lesson", lesson.told?.plan ?? (record.lessons[1] ?? record.lessons[0]).plan, lesson.at)));
   $("turner").append(spinner("⟳", "turn the crank on the sheet"), angleSlider());
   leaf.zoom = zoomable($("sheet"), ({ x, y, w, h }) => $("sheet").setAttribute("viewBox", `${x} ${y} ${w} ${h}`), clicked);
   $("zoom").append(...leaf.zoom.tools);

@@ -32,8 +32,7 @@ function takeFilm(view = "") {
   film.stops = stopsOf(leaf.sheet).filter((stop) => !view || stop.frame.view === view || gives(stop));
   film.frames = new Set(film.stops.map((stop) => stop.frame.id));
   film.at = -1;
-  film.first = new Map();
-  film.stops.forEach((stop, n) => stop.marks.forEach((mark) => { if (!film.first.has(mark)) film.first.set(mark, n); }));
+  film.first = new Map(film.stops.flatMap((stop, n) => stop.marks.map((mark) => [mark, n])).reverse());
   countStops();
 }
 
@@ -90,13 +89,8 @@ function drawStop(n, quick = still()) {
   asked.label = stop.label;
   $("panel").replaceChildren(...tellStep(stop.id, stop.label), tellWhy(stop.id, stop.label));
   if (!was || was.frame !== stop.frame) fitBox(boundsOf(leaf.sheet.marks.filter((m) => m.frame === stop.frame.id)));
-  const strokes = stop.helpers.map((h) => strokeOf(h, stop.frame)).filter(Boolean);
-  if (!strokes.length) {
-    for (const mark of stop.marks) {
-      const g = leaf.sheet.marks[mark].geometry;
-      if (g.line || g.polyline || g.arc || g.circle) strokes.push({ d: pathOf(g, leaf.height) });
-    }
-  }
+  const helped = stop.helpers.map((h) => strokeOf(h, stop.frame)).filter(Boolean), lines = stop.marks.map((mark) => leaf.sheet.marks[mark].geometry).filter((g) => !g.text && !g.fill);
+  const strokes = helped.length ? helped : lines.map((g) => ({ d: pathOf(g, leaf.height), centre: null }));
   // Each stroke is drawn in its turn; the radius of an arc stands from the compass's needle as long as that is drawn.
   const each = quick ? 0 : Math.min(800, 2400 / strokes.length) / film.speed, marks = stop.marks.map((mark) => leaf.elements[mark]);
   const drawn = strokes.map(({ d, centre }, i) => {

@@ -56,8 +56,6 @@ function tangentLength(phi, l1, ahead, pivot, fixed, radius) {
   return gap === null ? NaN : Math.sqrt(-gap.at(phi));
 }
 
-const pinDistance = (...span) => tangentLength(...span, 0);
-
 // --- a triangle on three legs --------------------------------------------------------------------------------------------
 
 const CIRCLE = 0, LINE = 1, SLOT = 2;
@@ -89,13 +87,8 @@ function correction(k, u, legs) {
 }
 
 function extent(legs) {
-  let reach = 0, lengths = 0, away = 0;
-  for (let i = 0; i < 15; i += 5) {
-    reach += size(legs[i + 4]);
-    if (legs[i] === CIRCLE) lengths += Math.abs(legs[i + 3]);
-    away = Math.max(away, size(legs[i + 1]));
-  }
-  return reach + lengths + away;
+  const each = [0, 5, 10].map((i) => size(legs[i + 4]) + (legs[i] === CIRCLE ? Math.abs(legs[i + 3]) : 0));
+  return each[0] + each[1] + each[2] + Math.max(...[1, 6, 11].map((i) => size(legs[i])));
 }
 
 const straight = /** @type {OfOne} */ ((u) => { const d = size(u); return [u[0] / d, u[1] / d]; });
@@ -150,9 +143,7 @@ const before = (numbers, x) => { let n = 0; while (n < numbers.length && numbers
 function onCourse(phi, angles, values) {
   if (Number.isNaN(phi)) return NOWHERE;
   const x = angles[0] + mod(phi - angles[0], 2 * Math.PI);
-  let low = 0, high = angles.length;
-  while (low < high) { const middle = (low + high) >> 1; if (angles[middle] <= x) low = middle + 1; else high = middle; }
-  const i = clip(low - 1, 0, angles.length - 2), share = (x - angles[i]) / (angles[i + 1] - angles[i]);
+  const i = clip(upTo(angles, x) - 1, 0, angles.length - 2), share = (x - angles[i]) / (angles[i + 1] - angles[i]);
   const a = values[i], b = values[i + 1];
   if (Number.isNaN(a[0])) return share > 0.5 ? b : NOWHERE;
   if (Number.isNaN(b[0])) return share <= 0.5 ? a : NOWHERE;
@@ -187,9 +178,7 @@ function swung(u, sense, low, swing) {
 // Each by its name; those that have one in this file, too, are used elsewhere.
 const PRIMITIVES = {
   "difference of products": differenceOfProducts,
-  cross,
-  dot,
-  unit,
+  cross, dot, unit,
   "lines meet"(p, u, q, v, det, way) {
     if (way !== undefined && !Number.isNaN(way)) return step(p, way, u);
     const [w, lost] = difference(q, p);
@@ -224,14 +213,14 @@ const PRIMITIVES = {
     if (length === undefined || distance === undefined) [length, distance] = [Math.sqrt((d - radius) * (d + radius)), d];
     return mul([length / distance, side * radius / distance], [e[0] / d, e[1] / d]);
   },
-  "distance from the crank's point": pinDistance,
+  "distance from the crank's point": (...span) => tangentLength(...span, 0),
   "tangent from the crank's point": tangentLength,
   "half-chord of two arcs"(phi, l1, ahead, pivot, fixed, l2, l3) {
     const span = [l1, ahead, pivot, fixed], gaps = gapsOfArcs(span, l2, l3);
     if (gaps === null) return NaN;
     const [p, q] = gaps;
     if (q.touches && Math.abs(l2 - l3) <= 1e-15 * (l2 + l3 + size(pivot) + size(fixed))) return Math.abs(p.root(phi)) / 2;
-    if (p.touches || q.touches) return Math.abs(p.root(phi) * q.root(phi)) / pinDistance(phi, ...span) / 2;
+    if (p.touches || q.touches) return Math.abs(p.root(phi) * q.root(phi)) / tangentLength(phi, ...span, 0) / 2;
     return Math.sqrt(gapOfArcs(span, l2, l3).at(phi) * gapOfArcs(span, l2, -l3).at(phi) / gapOfArcs(span, 0).at(phi)) / 2;
   },
   "half-chord of arc and line"(phi, l1, ahead, length, pivot, through, guide) {

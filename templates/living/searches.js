@@ -1,28 +1,20 @@
-// What searches find for given numbers: ways of assembly, where the cycle begins, strokes of the loads. On the page's own program.
+// What searches find for given numbers: ways of assembly, where the cycle begins, strokes of the loads, how the crank runs. On the page's own program.
 
 // One set of given numbers with what is found for it; the program is run without what comes later.
 function searched(given) {
   const m = record.motion, found = { given, start: m.searches.dead ? NaN : m.start, courses: coursesOf(given), loads: [] };
-  const known = new Map(); // all searches look at the same angles of their sweeps
-  const at = (phi) => {
-    if (!known.has(phi)) known.set(phi, run(m.watched, phi, found));
-    return known.get(phi);
-  };
-  const asked = (arg) => (phi) => argumentOf(arg, at(phi), given);
+  const at = remembered((phi) => run(m.watched, phi, found)), asked = (arg) => (phi) => argumentOf(arg, at(phi), given);
   if (m.searches.dead) [found.start, found.stroke] = startOf(m.searches.dead, asked, given);
   for (const load of m.searches.loads) found.loads.push(motionOf(load, asked, found.start));
+  found.wheel = wheelOf(found);
   return found;
 }
 
 // Ways of assembly of the groups of class III, one after another.
 function coursesOf(given) {
   const m = record.motion, found = { given, start: NaN, courses: [], loads: [] };
-  for (const course of m.searches.courses) {
-    found.courses.push(courseOf((phi) => {
-      const values = run(m.watched, phi, found);
-      return pointed(course.legs.map((arg) => argumentOf(arg, values, given)));
-    }, course.at, course.near));
-  }
+  const legsAt = ({ legs }) => (phi) => { const values = run(m.watched, phi, found); return pointed(legs.map((arg) => argumentOf(arg, values, given))); };
+  for (const course of m.searches.courses) found.courses.push(courseOf(legsAt(course), course.at, course.near));
   return found.courses;
 }
 
@@ -60,7 +52,7 @@ function motionOf(load, asked, start) {
     if (turns || !runs.some((r) => r.sense)) {
       const cut = runs.flatMap((r) => (r.end > TURN + NEAR ? [{ ...r, end: TURN }, { begin: 0, end: r.end - TURN, sense: r.sense, stroke: 0, working: false }] : [r]));
       const whole = cut.map((r) => ({ ...r, working: turns > 0 })).sort((a, b) => a.begin - b.begin);
-      return actingOn(load, { runs: overCycle(whole, period, load.first), low: NaN, long: NaN, way: turns >= 0 ? 1 : -1 });
+      return actingOn(load, { runs: overCycle(whole, period, load.first), low: NaN, long: NaN, way: turns >= 0 ? 1 : -1, endless: true });
     }
     ways = runs.map((r) => angles[t.indexOf(r.begin)]);
   }
@@ -81,12 +73,8 @@ function crossingsOf(run2, share, fractions) {
 
 // The parts of a run between two fractions of the way.
 function within(run2, share, from, to) {
-  const borders = [run2.begin, ...crossingsOf(run2, share, [from, to].filter((x) => x > 0 && x < 1)), run2.end], parts2 = [];
-  for (let i = 0; i + 1 < borders.length; i++) {
-    const middle = share((borders[i] + borders[i + 1]) / 2);
-    if (middle >= from && middle <= to) parts2.push({ ...run2, begin: borders[i], end: borders[i + 1] });
-  }
-  return parts2;
+  const borders = [run2.begin, ...crossingsOf(run2, share, [from, to].filter((x) => x > 0 && x < 1)), run2.end];
+  return borders.slice(1).map((end, i) => ({ ...run2, begin: borders[i], end })).filter(({ begin, end }) => { const x = share((begin + end) / 2); return x >= from && x <= to; });
 }
 
 // Which diagram acts on each run, with which sign, and where one run goes on as the one before it.

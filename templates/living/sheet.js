@@ -14,12 +14,12 @@ function arcPath([cx, cy], radius, from, to) {
 
 const polyPath = (points, height, closed) => `M${points.map(([x, y]) => `${fixed(x)} ${fixed(height - y)}`).join("L")}${closed ? "z" : ""}`;
 
+const lineOf = (g) => g.line ?? g.polyline ?? g.fill;
+const roundOf = (g) => ({ from: 0, to: 2 * Math.PI, ...(g.circle ?? g.arc) });
+
 function pathOf(g, height) {
-  if (g.line) return polyPath(g.line, height);
-  if (g.polyline) return polyPath(g.polyline, height, g.closed);
-  if (g.fill) return polyPath(g.fill, height, true);
-  if (g.circle) return arcPath([g.circle.centre[0], height - g.circle.centre[1]], g.circle.radius, 0, 2 * Math.PI);
-  return arcPath([g.arc.centre[0], height - g.arc.centre[1]], g.arc.radius, g.arc.from, g.arc.to);
+  const { centre, radius, from, to } = roundOf(g);
+  return centre ? arcPath([centre[0], height - centre[1]], radius, from, to) : polyPath(lineOf(g), height, g.closed || g.fill);
 }
 
 function look(style) {
@@ -65,8 +65,8 @@ const HIT = 9; // a click so near to a mark means it, pixels
 // Points along a shape: a letter's middle line, enough of an arc.
 function pointsAlong(g) {
   if (g.text) { const [x, y] = g.text.at, w = g.text.string.length * g.text.height * 0.6, h = g.text.height / 2; return [[x, y + h], [x + w, y + h]]; }
-  const { centre, radius, from = 0, to = 2 * Math.PI } = g.circle ?? g.arc ?? {};
-  return centre ? spread(from, to, 25).map((t) => step(centre, radius, cis(t))) : g.line ?? g.polyline ?? g.fill;
+  const { centre, radius, from, to } = roundOf(g);
+  return centre ? spread(from, to, 25).map((t) => step(centre, radius, cis(t))) : lineOf(g);
 }
 
 // Marks that come from a step, to find the one that is meant.
@@ -89,10 +89,10 @@ function nearest(lines, marks, p, reach) {
   return best;
 }
 
-const pointsOf = (g) => (g.text ? [g.text.at] : g.circle || g.arc ? [(g.circle ?? g.arc).centre] : g.line ?? g.polyline ?? g.fill);
+const pointsOf = (g) => (g.text ? [g.text.at] : lineOf(g) ?? [roundOf(g).centre]);
 
 const boundsOf = (marks) => extentOf(marks.flatMap(({ geometry: g }) => {
-  const pad = (g.circle ?? g.arc)?.radius ?? g.text?.height ?? 0;
+  const pad = roundOf(g).radius ?? g.text?.height ?? 0;
   return pointsOf(g).flatMap(([x, y]) => [[x - pad, y - pad], [x + pad, y + pad]]);
 }));
 

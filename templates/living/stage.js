@@ -1,6 +1,6 @@
 // The linkage in motion: its views drawn for any crank angle from what their marks hang on.
 
-const stage = { cards: [], playing: false, seconds: 6, last: 0, vanes: false };
+const stage = { cards: [], playing: false, seconds: 6, moving: 0, vanes: false };
 
 // One view of each plan, at the highlighted position where there is one; of groups and their forces every view.
 function liveViews() {
@@ -242,7 +242,7 @@ function openStage() {
 function stageBar() {
   const vanes = node("button", { type: "button", "aria-pressed": String(stage.vanes), onclick: () => { stage.vanes = !stage.vanes; $("stage").classList.toggle("vanes", stage.vanes); vanes.setAttribute("aria-pressed", String(stage.vanes)); drawStage(); } }, say("velocities"));
   return [spinner("▶", "play"), angleSlider(), node("output", { class: "count angle" }), vanes,
-    choice("speed", [12, 6, 3].map((s) => [s, say("a turn in {s} s", { s })]), stage.seconds, (s) => { stage.seconds = Number(s); })];
+    choice("speed", [12, 6, 3].map((s) => [s, say("a turn in {s} s", { s })]), stage.seconds, (s) => { stage.seconds = Number(s); spin(stage.playing); })];
 }
 
 const showRunning = (one, on) => { one.textContent = on ? "❚❚" : one.dataset.sign; one.setAttribute("aria-label", say(on ? "pause" : one.dataset.key)); };
@@ -250,13 +250,7 @@ const showRunning = (one, on) => { one.textContent = on ? "❚❚" : one.dataset
 function spin(on) {
   stage.playing = on;
   for (const one of document.querySelectorAll(".spin")) showRunning(one, on);
-  if (!on) return;
-  stage.last = performance.now();
-  const frame = (now) => {
-    if (!stage.playing) return;
-    turn(machine.phi + senseOfTurn() * 2 * Math.PI * (now - stage.last) / 1000 / stage.seconds);
-    stage.last = now;
-    requestAnimationFrame(frame);
-  };
-  requestAnimationFrame(frame);
+  cancelAnimationFrame(stage.moving);
+  const from = machine.phi;
+  if (on) animate(stage, stage.seconds * 1000, (t) => turn(from + senseOfTurn() * 2 * Math.PI * t), () => spin(true));
 }

@@ -19,15 +19,11 @@ function tellNow() {
   for (const one of document.querySelectorAll("#panel [data-moment]")) one.textContent = momentOf(machine.phi);
 }
 
-function givenOf(arg, when, plan) {
-  const angle = typeof when === "number";
-  if (arg.over !== "positions") return angle && arg.over === "none" ? machine.given[arg.name] ?? arg.given : arg.given;
-  return angle ? undefined : arg.given?.[Math.max(plan.positions.indexOf(when), 0)];
-}
-
 function argumentChip(arg, when, plan) {
   if (arg.step !== undefined) return chip(arg.step, when);
-  const text = arg.name === "crank angles" && typeof when === "number" ? `<small data-moment>${momentOf(when)}</small>` : `<small>${plain(shown(givenOf(arg, when, plan), arg.unit))}</small>`;
+  const angle = typeof when === "number", now = angle && arg.over === "none" ? machine.given[arg.name] : undefined;
+  const given = arg.over !== "positions" ? now ?? arg.given : angle ? undefined : arg.given?.[Math.max(plan.positions.indexOf(when), 0)];
+  const text = arg.name === "crank angles" && angle ? `<small data-moment>${momentOf(when)}</small>` : `<small>${plain(shown(given, arg.unit))}</small>`;
   const name = arg.symbol ? lettered(arg.symbol) : plain(arg.name === "constant" ? "" : arg.name);
   return node("span", { class: "chip given", title: arg.source ?? arg.name, ".innerHTML": `${name} ${text}` });
 }

@@ -13,6 +13,12 @@ function rootOf(f, low, high) {
   }
 }
 
+// A function that keeps what it gave: searches look at the same angles again and again.
+function remembered(f) {
+  const known = new Map();
+  return (x) => { if (!known.has(x)) known.set(x, f(x)); return known.get(x); };
+}
+
 const spread = (from, to, many) => Array.from({ length: many }, (_, i) => from + (to - from) * i / (many - 1));
 const swept = Array.from({ length: SWEEP }, (_, i) => i * (TURN / SWEEP));
 
@@ -53,9 +59,8 @@ function runsOf(speed) {
     } else if (signs[i] !== signs[j]) ends.push([zeros ? after(1) : rootOf(speed, after(0), after(1)), signs[j]]);
   });
   if (!ends.length) return [{ begin: 0, end: TURN, sense: signs[moving[0]], stroke: 0, working: false }];
-  for (const one of ends) one[0] = mod(one[0], TURN);
-  ends.sort((a, b) => a[0] - b[0]);
-  return ends.map(([begin, sense], k) => ({ begin, end: k + 1 < ends.length ? ends[k + 1][0] : ends[0][0] + TURN, sense, stroke: 0, working: false }));
+  const borders = ends.map(([angle, sense]) => [mod(angle, TURN), sense]).sort((a, b) => a[0] - b[0]);
+  return borders.map(([begin, sense], k) => ({ begin, end: k + 1 < borders.length ? borders[k + 1][0] : borders[0][0] + TURN, sense, stroke: 0, working: false }));
 }
 
 const later = (run, angle, strokes = 0) => ({ ...run, begin: run.begin + angle, end: run.end + angle, stroke: run.stroke + strokes });
@@ -70,25 +75,18 @@ function inStrokes(runs, ways) {
     if (at === -1 && to === 1 && high > low) for (let m = k; m < (n > k ? n : n + many); m++) working[m % many] = true;
   });
   const first = Math.max(working.findIndex((w, k) => w !== working[(k + many - 1) % many]), 0);
-  let number = -1, last = null;
+  let number = -1;
   return Array.from({ length: many }, (_, m) => {
     const i = (first + m) % many;
-    if (last === null || working[i] !== working[last]) number++;
-    last = i;
+    if (!m || working[i] !== working[(i + many - 1) % many]) number++;
     return later({ ...runs[i], stroke: number, working: working[i] }, TURN * Math.floor((first + m) / many));
   });
 }
 
 // Begin and end of the working stroke, of several the longest.
 function workingStroke(runs) {
-  let best = null, open = null;
-  runs.forEach((r, k) => {
-    if (!r.working) { open = null; return; }
-    if (!open || runs[k - 1]?.stroke !== r.stroke) open = [r.begin, r.end];
-    open[1] = r.end;
-    if (!best || open[1] - open[0] > best[1] - best[0]) best = [...open];
-  });
-  return best;
+  const numbers = [...new Set(runs.filter((r) => r.working).map((r) => r.stroke))], ends = numbers.map((n) => runs.filter((r) => r.stroke === n)).map((own) => [own[0].begin, own.at(-1).end]);
+  return ends.reduce((best, one) => (best && best[1] - best[0] >= one[1] - one[0] ? best : one), null);
 }
 
 // Runs of one turn over all turns of the cycle, numbered from the stroke that begins nearest to an angle.
@@ -116,13 +114,11 @@ function runAt(runs, period, turned, side = 0) {
 
 // --- the way of an output ------------------------------------------------------------------------------------------------
 
-const unwrapped = (angles) => {
-  let turns = 0;
-  return angles.map((a, i) => {
-    if (i) { const d = a - angles[i - 1]; turns -= Math.round(d / TURN); }
-    return a + TURN * turns;
-  });
-};
+// Angles one after another without jumps of a turn.
+function unwrapped(angles) {
+  let [last] = angles;
+  return angles.map((a) => (last = a - TURN * Math.round((a - last) / TURN)));
+}
 
 const reach = (values) => Math.max(...values) - Math.min(...values);
 

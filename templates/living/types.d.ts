@@ -15,4 +15,10 @@ declare const PROGRAMS: Record<string, (inputs: unknown[], constants: unknown[],
 /** vendor/lean-qr.js */
 declare const QR: { generate(text: string): { size: number, get(x: number, y: number): boolean } };
 
+/** vendor/webm-muxer.js */
+declare const WEBM: {
+  ArrayBufferTarget: new () => { buffer: ArrayBuffer },
+  Muxer: new (options: object) => { target: { buffer: ArrayBuffer }, addVideoChunk(chunk: EncodedVideoChunk, told?: EncodedVideoChunkMetadata): void, finalize(): void },
+};
+
 interface Window { tmm: Record<string, unknown> }

@@ -7,13 +7,12 @@ import { working } from "./take.js";
 import { framed } from "./zoom.js";
 
 const work = latest();
-const ACCEPT = ".jpg,.jpeg,.png,.pdf,.dxf,.csv";
 
 export function startCheck() {
   const which = node("select", { id: "which", "aria-label": say("which sheet") });
   const found = node("div", { id: "found" });
   const run = (door, files, show) => working(found, work, async (how) => show(found, await ask(door, { text: project.text, name: project.name, sheet: which.value }, { ...how, files })));
-  $("check").replaceChildren(node("div", { class: "bar" }, which, dropZone(say("drop a drawing"), ACCEPT, ([file]) => run("compare", [file], showFound)),
+  $("check").replaceChildren(node("div", { class: "bar" }, which, dropZone(say("drop a drawing"), ".jpg,.jpeg,.png,.pdf,.dxf,.csv", ([file]) => run("compare", [file], showFound)),
     dropZone(say("drop a folder"), "", (files) => run("group", files, showGroup), true)), found);
 }
 
@@ -23,8 +22,7 @@ export function offerSheets(titles) {
 
 function showFound(place, found) {
   if (found.refused) {
-    const img = node("img", { alt: "", class: "refused" });
-    picture(img, bytesOf(found.theirs.data), found.theirs.type);
+    const img = picture(node("img", { alt: "", class: "refused" }), bytesOf(found.theirs.data), found.theirs.type);
     place.replaceChildren(node("p", { class: "bad lines" }, found.refused), img);
     return;
   }

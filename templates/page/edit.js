@@ -63,26 +63,14 @@ function coloured(line) {
   return found;
 }
 
-// The table and the key that the cursor stands in.
-function under() {
-  const text = $("text"), lines = text.value.slice(0, text.selectionStart).split("\n"), n = lines.length - 1;
-  const line = text.value.split("\n")[n] ?? "";
-  let table = "", from = 0;
-  for (let k = n; k >= 0; k--) {
-    const found = /^\s*\[\[?\s*([\w."-]+)\s*\]\]?/.exec(k === n ? line : lines[k]);
-    if (found) { table = found[1]; from = k; break; }
-  }
-  return { table, from, key: /^\s*([\w-]+)\s*=/.exec(line)?.[1] ?? "" };
-}
-
+// The table and the key that the cursor stands in, and what else the table may have.
 function tellKey() {
-  const { table, from, key } = under(), rows = keys[table] ?? [], row = rows.find((one) => one.name === key);
+  const { value, selectionStart } = $("text"), lines = value.split("\n"), n = value.slice(0, selectionStart).split("\n").length - 1;
+  const tableOf = (line) => /^\s*\[\[?\s*([\w."-]+)\s*\]\]?/.exec(line)?.[1], keyOf = (line) => /^\s*([\w-]+)\s*=/.exec(line)?.[1];
+  const from = lines.findLastIndex((line, k) => k <= n && tableOf(line)), next = lines.findIndex((line, k) => k > from && /^\s*\[/.test(line));
+  const own = lines.slice(Math.max(from, 0), next < 0 ? lines.length : next), table = tableOf(lines[from] ?? "") ?? "", rows = keys[table] ?? [], row = rows.find((one) => one.name === keyOf(lines[n]));
   if (!rows.length) { $("key").replaceChildren(); return; }
-  const lines = $("text").value.split("\n");
-  let end = from + (table ? 1 : 0);
-  while (end < lines.length && !/^\s*\[/.test(lines[end])) end++;
-  while (end > from + 1 && !lines[end - 1].trim()) end--;
-  const there = new Set(lines.slice(from, end).map((line) => /^\s*([\w-]+)\s*=/.exec(line)?.[1]));
+  const there = new Set(own.map(keyOf)), end = Math.max(from, 0) + own.findLastIndex((line, k) => !k || line.trim()) + 1;
   const insert = (one) => {
     lines.splice(end, 0, `${one.name} = `);
     $("text").value = lines.join("\n");

@@ -1,8 +1,7 @@
 """What the page computes by itself: the plans of a linkage as a program of the crank angle and of the given numbers.
 
 Besides the plans the page searches again whenever a given number is another: ways of assembly of class III, dead positions,
-strokes of the loads (``templates/living/searches.js``). How unevenly a crank runs with its flywheel holds for the project's own
-numbers alone.
+strokes of the loads (``templates/living/searches.js``), and how unevenly the crank runs (``templates/living/flywheel.js``).
 """
 
 from __future__ import annotations
@@ -15,10 +14,13 @@ import numpy as np
 
 from tmm_sheets.construction.function import JavaScriptSource, told
 from tmm_sheets.construction.program import depending, is_row, name_of, program, rows_of
+from tmm_sheets.construction.rules import GIVEN_NUMBER
 from tmm_sheets.construction.step import Given, GivenNumber, GivenPoint, Step, ordered, parents, value_of
 from tmm_sheets.mechanism.groups.triad import NEAR_DIRECTION, NEAR_PLACE, TriadGroup
+from tmm_sheets.methods.flywheel.flywheel import Flywheel
+from tmm_sheets.methods.flywheel.reduced import Reduction, turning_back
 from tmm_sheets.methods.linkage.loads import DIAGRAM, PISTON, diagram
-from tmm_sheets.methods.linkage.numbering import SENSES
+from tmm_sheets.methods.linkage.numbering import PARTS, SENSES
 from tmm_sheets.task.schema import ForceTable, MomentTable
 
 if TYPE_CHECKING:
@@ -44,7 +46,7 @@ class WrittenPlan:
     """A program as text with how the page has each of its inputs.
 
     {"angle": "world"} or "turned", {"course": ...}, {"load": ...} or {"friction": ...} by a search, {"diagram": its name, ...},
-    {"found": value} by plans that the page does not have, {"given": name}.
+    {"wheel": name} by the running of the crank, {"found": value} by plans that the page does not have, {"given": name}.
     """
 
     source: JavaScriptSource
@@ -59,9 +61,9 @@ class WrittenPlan:
 class MotionProgram(NamedTuple):
     """The programs of a linkage's plans, and what the page takes besides their texts.
 
-    "all" computes every plan, "watched" what searches ask for. ``told`` has what each program takes, by its name; ``givens``; the
-    ids of the ``crank``'s pivot and pin; ``start``, its angle in position 0, rad, the ``sense`` and the ``period`` of the cycle;
-    and the ``searches``.
+    "all" computes every plan, "watched" what searches ask for, "wheel" the reduced quantities where the crank runs as its flywheel
+    lets it. ``told`` has what each program takes, by its name; ``givens``; the ids of the ``crank``'s pivot and pin; ``start``, its
+    angle in position 0, rad, the ``sense`` and the ``period`` of the cycle; and the ``searches``.
     """
 
     programs: dict[str, WrittenPlan]
@@ -73,18 +75,25 @@ def motion(project: Project, index: StepIndex) -> MotionProgram:
     study, cycle = _studied(project), project.cycle
     positions = len(study.turned)
     own = [step for plan in study.plans.values() for step in (*plan.auxiliaries.values(), *plan)]
-    search = Searches(project, study, own)
+    wheel = UnevenCrank(project, study) if study.running is not None else None
+    reduced = list(wheel.steps.values()) if wheel is not None else []
+    search = Searches(project, study, [*own, *reduced], wheel.sides if wheel is not None else {})
     rows = dict(search.inputs)
-    taken = {id(a): a for step in ordered(own, parents) for a in step.args if id(a) in rows}
-    angles = (study.positions.angle, cycle.turned_row(study.turned), *rows_of(own, positions))
+    every = [*own, *reduced]
+    taken = {id(a): a for step in ordered(every, parents) for a in step.args if id(a) in rows}
+    angles = (study.positions.angle, cycle.turned_row(study.turned), *rows_of(every, positions))
     for x in angles:
         for name, row in (("world", study.positions.phi), ("turned", study.turned)):
             if np.array_equal(value_of(x), row) and id(x) not in rows:
                 rows[id(x)] = {"angle": name}
-    objects = {id(x): x for x in angles if id(x) in rows} | taken
+    found = wheel.found if wheel is not None else []
+    rows |= {id(x): way for x, way in found}
+    objects = {id(x): x for x in (*angles, *(x for x, _ in found)) if id(x) in rows} | taken
     # A number that a search finds makes nothing move by itself.
     over = {key: x for key, x in objects.items() if "row" not in rows[key] or rows[key]["row"] in ("ahead", "sign")}
-    lost = _lost(own, over, positions)
+    lost = _lost(every, over, positions)
+    if wheel is not None and (wheel.turning_back or any(id(step) in lost for step in reduced)):
+        wheel = None  # angles that the page does not search, or what it does not compute
     wanted = {step.path: step for step in own
               if step.path in index.steps and id(step) not in lost and np.ndim(step.value) < 2 and _plain(step)} | search.forces
     chosen: dict[str, _Told] = {}
@@ -100,12 +109,15 @@ def motion(project: Project, index: StepIndex) -> MotionProgram:
         return WrittenPlan(JavaScriptSource(made), inputs)
 
     programs = {"all": written(wanted), "watched": written(search.watched)}
+    if wheel is not None:
+        programs["wheel"] = written(wheel.steps)
     factors = {one["diagram"]: {"name": one["diagram"], "symbol": one["symbol"], "unit": "", "value": 1.0}
                for made in programs.values() for one in made.inputs if "diagram" in one}
     givens = [{"name": g.name, "symbol": g.symbol, "unit": g.unit, "value": told(value_of(g))} for g in chosen.values()]
+    more = {"wheel": wheel.told} if wheel is not None else {}
     points, crank = study.positions.points, study.mechanism.crank
     return MotionProgram(programs, {
-        **{name: one.told for name, one in programs.items()}, "givens": [*givens, *factors.values()],
+        **{name: one.told | more.get(name, {}) for name, one in programs.items()}, "givens": [*givens, *factors.values()],
         "crank": (points[crank.pivot].path, points[crank.pin].path), "start": float(cycle.start), "sense": float(cycle.sense),
         "period": float(cycle.period), "searches": search.told})
 
@@ -205,6 +217,54 @@ def _givens(wanted: Iterable[Step], stop: set[int]) -> dict[str, _Told]:
     return found
 
 
+class UnevenCrank:
+    """What makes a crank run unevenly.
+
+    ``steps`` are the reduced moment before (``before``) and behind a jump, the reduced moment of inertia (``mass``), the crank's
+    own (``crank``), that of the ``rotor``, the coefficient ``delta`` or what a given flywheel has ``added``, the mean speed
+    ``omega``. ``found`` says what the page takes in the place of steps and rows, ``sides`` of which side of a jump rows are, by
+    their identity. ``turning_back`` are the angles of change points, rad.
+    """
+
+    def __init__(self, project: Project, study: Study) -> None:
+        wheel: Flywheel = project.flywheel
+        reduced = project.reduced
+        at = Reduction(reduced, "@page", study.turned, study.labels)
+        self.steps = {"behind": at.moment(1)}
+        behind = len(at.chosen)
+        self.steps |= {"before": at.moment(-1), "mass": at.inertia}
+        drawn = reduced.at("acceleration", study.turned)
+        self.sides = {id(row): side for rows, side in ((at.chosen[:behind], 1), (at.chosen[behind:], -1), (drawn.chosen, 1))
+                      for row in rows}
+        self.found: list[tuple[Any, dict[str, str]]] = [(wheel.driving_plan["M"], {"wheel": "M"}),
+                                                        (wheel.first_plan["J_вр"], {"wheel": "J"})]
+        crank = self.steps["crank"] = reduced.crank
+        if isinstance(crank.args[0], Step):  # by the place of its centre of mass, at any angle
+            self.found += [(crank, {"wheel": "crank"}), *((x, {"angle": "world"}) for x in rows_of([crank], 1))]
+            self.steps["crank"] = crank.args[0]
+        if wheel.given:
+            self.steps["added"] = wheel.added
+        else:
+            self.steps["delta"] = wheel.data_plan["δ"]
+        if "J_рот" in wheel.rotor_plan:
+            self.steps["rotor"] = wheel.rotor_plan["J_рот"]
+        self.steps["omega"] = Step("ω_1", GIVEN_NUMBER, (reduced.omega,))
+        loads = [load for load in reduced.forces if not hasattr(load.law, "strokes")]
+        self.turning_back = turning_back(reduced.mechanism, reduced.cycle)
+        self.told = {"method": wheel.method, "alone": at.crank_alone, "jumps": [float(t) for load in loads for t in load.jumps],
+                     **self._positions(project)}
+
+    @staticmethod
+    def _positions(project: Project) -> dict[str, Any]:
+        """Angles turned to the numbered positions, or how many parts each stroke has and how many turns there are."""
+        cycle = project.cycle
+        turned = cycle.numbering["φ_п"] if cycle.numbering is not None else None
+        if turned is not None and turned.rule in PARTS:
+            _, *parts = (int(value_of(x)) for x in turned.args)
+            return {"parts": parts if len(parts) > 2 else [*parts, 1]}
+        return {"positions": np.asarray(cycle.turned).tolist()}
+
+
 Inputs = dict[int, dict[str, Any]]
 """How the page has the arguments of some steps, by their identity."""
 
@@ -214,18 +274,15 @@ class Searches:
 
     ``forces`` are those that friction asks for, which need every plan.
 
-    ``courses`` and ``loads`` are told in the order in which they are searched; ``dead`` is None where position 0 is given,
-    ``friction`` empty where the pairs have none. ``behind`` are rows of what is behind a jump of a load, by their identity: an
-    uneven crank is accelerated by that.
+    ``sides`` are those of the jumps that rows are of, 0 unless told, by their identity. ``courses`` and ``loads`` are told in the
+    order in which they are searched; ``dead`` is None where position 0 is given, ``friction`` empty where the pairs have none.
     """
 
-    def __init__(self, project: Project, study: Study, steps: Iterable[Step]) -> None:
+    def __init__(self, project: Project, study: Study, steps: Iterable[Step], sides: Mapping[int, int]) -> None:
         self.inputs: Inputs = {}
         self.watched: dict[str, Step] = {}
         self.forces: dict[str, Step] = {}
-        self.project, self.study = project, study
-        uneven = study.running is not None
-        self.behind = {id(x) for x in project.reduced.at("acceleration", study.turned).chosen} if uneven else set()
+        self.project, self.study, self.sides = project, study, sides
         triads = [g for g in study.mechanism.groups if isinstance(g, TriadGroup)]
         every = list(ordered(steps, parents)) if triads else []
         self.courses = [self._course(n, g, every) for n, g in enumerate(triads)]
@@ -324,7 +381,7 @@ class Searches:
                 self.inputs[id(end)] = {"load": number, "row": key}
 
     def _side(self, row: Any) -> dict[str, int]:
-        return {"side": 1} if id(row) in self.behind else {}
+        return {"side": self.sides[id(row)]} if id(row) in self.sides else {}
 
     def _friction(self, rows: Iterable[Any]) -> list[dict[str, Any]]:
         """Pairs with friction: the reaction that is assumed and found, and along what it slides where it does."""

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
     from tmm_sheets.task.variant import Variant
 
-MODULES = ("digits", "primitives", "strokes", "courses", "searches", "formula", "data", "machine", "sheet",
+MODULES = ("digits", "primitives", "strokes", "courses", "searches", "formula", "data", "flywheel", "machine", "sheet",
            "steps", "ask", "markers", "player", "letters", "stage", "drag", "change", "lesson", "guess", "webm", "address", "main")
 """Modules of the page in templates/living, in the order in which they stand in it."""
 
@@ -115,7 +115,7 @@ def _written(record: Mapping[str, Any], made: MotionProgram | None) -> str:
         "style": _text("page.css"), "font": b64encode(template("fonts/TMMSheetsB.ttf").read_bytes()).decode(),
         "record": b64encode(packed).decode(),
         "programs": f"{{\n{programs}\n}}".replace("</", "<\\/"),
-        "modules": f"{_text('vendor/lean-qr.js')}\n{script()}",
+        "modules": "\n".join((_text("vendor/lean-qr.js"), _text("vendor/webm-muxer.js"), script())),
     }  # fmt: skip
     return re.sub(r"<!--(\w+)-->", lambda m: parts[m[1]], _text("page.html"))
 
