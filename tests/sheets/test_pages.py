@@ -70,6 +70,30 @@ def test_what_does_not_touch_does_not_meet():
         assert not pages._near(a.ink.moved(by), b.ink.moved(other), pages.APART - 1e-3)
 
 
+def test_pages_are_even_and_begin_as_the_sheet_does():
+    project = opened("lugansk/shaper", orientation="portrait")
+    upright = paper("A1", True)
+    made = pages._pages(list(pages._pieces(composed(project, 1))), upright, "1")
+    assert [page.paper for page in made] == [upright, upright]
+    assert all(page.area > upright.width * upright.height / 3 for page in made)
+    first = min(made[0].placed, key=lambda placed: placed[0].begin)
+    assert all(first[0].begin < piece.begin for page in made for piece, _ in page.placed if piece is not first[0])
+    corners = [piece.ink.moved(by) for piece, by in made[0].placed]
+    top_left = first[0].ink.moved(first[1])
+    assert top_left.x0 == min(box.x0 for box in corners)
+    assert top_left.y1 == max(box.y1 for box in corners)
+
+
+def test_what_stands_in_a_gap_of_another_is_on_its_page():
+    project = opened("lugansk/shaper", orientation="portrait")
+    made = pages._pages(list(pages._pieces(composed(project, 2))), paper("A1", True), "1")
+    pieces = [(k, piece) for k, page in enumerate(made) for piece, _ in page.placed]
+    among = [(a, b) for (a, one), (b, other) in combinations(pieces, 2)
+             if one.ink.contains(other.ink.centre) or other.ink.contains(one.ink.centre)]
+    assert among
+    assert all(a == b for a, b in among)
+
+
 def test_pages_are_numbered_and_told(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "tmm-sheets.toml").write_text('[paper]\nformat = "A3"\n', encoding="utf-8")

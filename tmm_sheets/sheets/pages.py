@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise, product
+from itertools import chain, pairwise, permutations, product
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -41,7 +41,7 @@ FOLLOWING = "2a"
 """Form of the title block on all pages but the first."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Piece:
     """Marks that stand together, with the numbers they have on the sheet, and the rectangle round them."""
 
@@ -84,6 +84,15 @@ class PaperPage(NamedTuple):
     paper: Paper
     placed: list[tuple[Piece, complex]]
 
+    @property
+    def area(self) -> float:
+        """Area of the rectangles round its pieces, mm²."""
+        return sum(piece.ink.width * piece.ink.height for piece, _ in self.placed)
+
+    def belongs(self, other: Piece) -> bool:
+        """Whether a piece stands in a gap of one of this page on the sheet, or one of this page in a gap of it."""
+        return any(a.contains(b.centre) for piece, _ in self.placed for a, b in permutations((piece.ink, other.ink)))
+
 
 def on_paper(project: Project, n: int, composed: Composed) -> tuple[list[Drawing], list[str]]:
     """The pages of sheet ``n`` (from 1) on the paper that a project asks for, and what is to be said of those on larger paper."""
@@ -92,9 +101,9 @@ def on_paper(project: Project, n: int, composed: Composed) -> tuple[list[Drawing
         return [composed.drawing], []
     wanted = paper(table.format, table.orientation == "portrait")
     pages = _pages(list(_pieces(composed)), wanted, project.variant.title_block.form)
-    remark = tell('view "{title}" is on {larger}: {paper} has no room for its {width:.0f} x {height:.0f} mm')
-    told = [remark.format(title=piece.title, larger=page.paper.name, paper=wanted.name, width=piece.ink.width,
-                          height=piece.ink.height) for page in pages if page.paper.name != wanted.name for piece, _ in page.placed]
+    told = [tell('view "{title}" is on {larger}: {paper} has no room for its {width:.0f} x {height:.0f} mm').format(
+                title=piece.title, larger=page.paper.name, paper=wanted.name, width=piece.ink.width, height=piece.ink.height)
+            for page in pages if page.paper.name != wanted.name for piece, _ in page.placed]
     return [_drawn(project, n, composed.drawing, page, k, len(pages)) for k, page in enumerate(pages, 1)], told
 
 
@@ -104,12 +113,10 @@ def on_paper(project: Project, n: int, composed: Composed) -> tuple[list[Drawing
 def _pieces(composed: Composed) -> Iterator[Piece]:
     """The views of a sheet without its frame, each with its labels."""
     marks, parts = composed.drawing.marks, composed.parts
-    labels = parts[-1].first
     for a, b in pairwise(k for k, part in enumerate(parts) if not part.title):
-        own = set(range(parts[a].first, parts[b].first))
-        for group in composed.groups:
-            if a <= group.part < b and group.first >= labels:
-                own |= set(range(group.first, group.end))
+        groups = (range(group.first, group.end) for group in composed.groups
+                  if a <= group.part < b and group.first >= parts[-1].first)
+        own = {*range(parts[a].first, parts[b].first), *chain.from_iterable(groups)}
         if own and parts[a].draw != FRAME:
             titled = next((part for part in parts[a + 1 : b] if part.title), parts[a])
             yield Piece(said(titled), tuple((k, marks[k]) for k in sorted(own)), parts[a].box)
@@ -146,69 +153,79 @@ def _near(a: Box, b: Box, apart: float = 0.0) -> bool:
 
 
 def _pages(pieces: Sequence[Piece], asked: Paper, first: str) -> list[PaperPage]:
-    """Pages by a simple rule: each piece on the first page that has room for it, there high and then left.
+    """As few pages as the pieces take in the order of the sheet, and of as few pages the most even ones.
 
-    What the sheet begins with comes first, then the largest pieces; pages follow each other as their first pieces do on the sheet,
-    larger paper last.
+    Pages follow each other as their first pieces do on the sheet, larger paper last.
     """
     def has_room(unit: Piece, form: str = first) -> bool:
-        return _paper_for(unit, asked, form).name == asked.name
+        return _filled([unit], (asked, asked.other_way), form) is not None
 
     def touch(a: Piece, b: Piece) -> bool:
         return not a.cells.isdisjoint(b.cells)
 
-    def within(a: Piece, b: Piece) -> bool:
-        return touch(a, b) and Box.around(np.concatenate((a.ink.corners, b.ink.corners))) in (a.ink, b.ink)
-
     units = list[Piece]()
     for unit in _together(pieces, touch):
-        own = dict(unit.marks).keys()
-        inside = [piece for piece in pieces if dict(piece.marks).keys() <= own]
-        units += [unit] if has_room(unit, FOLLOWING) else _together((piece.parted() for piece in inside), within)
+        inside = [piece for piece in pieces if dict(piece.marks).keys() <= dict(unit.marks).keys()]
+        units += [unit] if has_room(unit, FOLLOWING) else _together(
+            (piece.parted() for piece in inside),
+            lambda a, b: touch(a, b) and Box.around(np.concatenate((a.ink.corners, b.ink.corners))) in (a.ink, b.ink))
     # What stands in the gaps of something stays there, if that makes it no larger than a page.
-    units = _together(units, lambda a, b: _near(a.ink, b.ink) and _put(a.with_other(b), PaperPage(asked, []), first))
+    units = _together(units, lambda a, b: _near(a.ink, b.ink) and bool(_filled([a.with_other(b)], [asked], first)))
+    units.sort(key=lambda unit: (not has_room(unit), unit.begin))
+    pages = min((_shared(units, asked, first, share / 20 * asked.width * asked.height) for share in range(1, 21)),
+                key=lambda pages: (len(pages), sum(page.area**2 for page in pages)))
+    pages[1:] = sorted(pages[1:], key=lambda page: (page.paper.name != asked.name, min(piece.begin for piece, _ in page.placed)))
+    return [_spread(page, FOLLOWING if k else first) for k, page in enumerate(pages)]
+
+
+def _shared(units: Iterable[Piece], asked: Paper, first: str, most: float) -> list[PaperPage]:
+    """Each piece on the page of what it belongs to, else on the first that has room, as long as pieces fill at most so many mm²."""
+    larger = (paper(name, asked.width < asked.height) for name in reversed(MAIN) if MAIN[name][0] > min(asked[1:]))
+    papers = [way for one in (asked, *larger) for way in (one, one.other_way)]
     pages = list[PaperPage]()
-    begin = min((unit.begin for unit in units if has_room(unit)), default=0)
-    for unit in sorted(units, key=lambda unit: (not has_room(unit), unit.begin > begin, -unit.ink.width * unit.ink.height)):
-        usual = ((page, first if k == 0 else FOLLOWING) for k, page in enumerate(pages) if page.paper.name == asked.name)
-        if not any(_put(unit, page, form) for page, form in usual):
-            form = FOLLOWING if pages else first
-            pages.append(PaperPage(_paper_for(unit, asked, form), []))
-            _put(unit, pages[-1], form)
-    pages.sort(key=lambda page: (page.paper.name != asked.name, min(piece.begin for piece, _ in page.placed)))
-    return [_spread(page, first if k == 0 else FOLLOWING) for k, page in enumerate(pages)]
+    for unit in units:
+        belongs = sorted((not page.belongs(unit), k) for k, page in enumerate(pages))
+        others = ((k, [*(piece for piece, _ in pages[k].placed), unit], papers[:2]) for apart, k in belongs
+                  if pages[k].paper.name == asked.name and (not apart or pages[k].area + unit.ink.width * unit.ink.height < most))
+        ways = ([*pages[:k], page, *pages[k + 1:]] for k, pieces, on in chain(others, [(len(pages), [unit], papers)])
+                if (page := _filled(pieces, on, FOLLOWING if k else first)))
+        pages = next(ways)
+    return pages
+
+
+def _filled(pieces: Sequence[Piece], papers: Iterable[Paper], form: str) -> PaperPage | None:
+    """A page of the first of some papers that has room for all these pieces, put there in the order of the sheet if that fits."""
+    sizes = (lambda piece: -piece.begin, lambda piece: piece.ink.width * piece.ink.height, lambda piece: piece.ink.height,
+             lambda piece: piece.ink.width)
+    for one, size in product(papers, sizes):
+        page = PaperPage(one, [])
+        if all(_put(piece, page, form) for piece in sorted(pieces, key=size, reverse=True)):
+            return page
+    return None
 
 
 def _spread(page: PaperPage, form: str) -> PaperPage:
     """The page with what stands on it farther apart, and in the middle of it, as far as there is room."""
     inside, closed = page.paper.frame.inset(EDGE), [block(form, page.paper), page.paper.designation]
-    for wide, high in sorted(product(SPREADS, SPREADS), key=lambda way: -way[0] * way[1]):
+    ways = sorted(product(SPREADS, SPREADS, (0.5, 0.0), (0.5, 0.0)), key=lambda way: -way[0] * way[1])
+    for wide, high, share_x, share_y in ways:
         places = [piece.ink.moved(complex(wide * (piece.ink.x0 + by.real - inside.x0) + inside.x0 - piece.ink.x0,
                                           inside.y1 - high * (inside.y1 - piece.ink.y1 - by.imag) - piece.ink.y1))
                   for piece, by in page.placed]
         right, low = max(box.x1 for box in places), min(box.y0 for box in places)
-        for share_x, share_y in product((0.5, 0.0), (0.5, 0.0)):
-            by = complex(share_x * (inside.x1 - right), -share_y * (low - inside.y0))
-            there = [box.moved(by) for box in places]
-            if right <= inside.x1 and low >= inside.y0 and not any(_near(a, b, APART) for a in there for b in closed):
-                return PaperPage(page.paper, [(piece, complex(box.x0 - piece.ink.x0, box.y1 - piece.ink.y1))
-                                         for (piece, _), box in zip(page.placed, there, strict=True)])
+        there = [box.moved(complex(share_x * (inside.x1 - right), -share_y * (low - inside.y0))) for box in places]
+        if right <= inside.x1 and low >= inside.y0 and not any(_near(a, b, APART) for a in there for b in closed):
+            return PaperPage(page.paper, [(piece, complex(box.x0 - piece.ink.x0, box.y1 - piece.ink.y1))
+                                     for (piece, _), box in zip(page.placed, there, strict=True)])
     return page
-
-
-def _paper_for(piece: Piece, asked: Paper, form: str) -> Paper:
-    """The paper asked for if a piece has room on it, whichever way; else the smallest that has."""
-    larger = [paper(name, asked.width < asked.height) for name, (short, _) in reversed(MAIN.items()) if short > min(asked[1:])]
-    ways = [way for one in (asked, *larger) for way in (one, one.other_way)]
-    return next((way for way in ways if _put(piece, PaperPage(way, []), form)), ways[-2])
 
 
 def _put(piece: Piece, page: PaperPage, form: str) -> bool:
     """Put a piece on a page where it has room; whether it has."""
     inside, ink = page.paper.frame.inset(EDGE), piece.ink
     closed = [block(form, page.paper), page.paper.designation, *(other.ink.moved(by) for other, by in page.placed)]
-    tops = sorted({inside.y1, *(box.y0 - APART for box in closed)}, reverse=True)
-    for top, left in product(tops, sorted({inside.x0, *(box.x1 + APART for box in closed)})):
+    for top, left in product(sorted({inside.y1, *(box.y0 - APART for box in closed)}, reverse=True),
+                             sorted({inside.x0, *(box.x1 + APART for box in closed)})):
         by = complex(left - ink.x0, top - ink.y1)
         there = ink.moved(by)
         if there.x1 <= inside.x1 and there.y0 >= inside.y0 and not any(_near(there, box, APART) for box in closed):
@@ -220,19 +237,17 @@ def _put(piece: Piece, page: PaperPage, form: str) -> bool:
 def _drawn(project: Project, n: int, sheet: Drawing, page: PaperPage, number: int, count: int) -> Drawing:
     """A page with its frame and title block; dimensions, views and forms are told as on the sheet."""
     canvas = Canvas()
-    form = project.variant.title_block.form if number == 1 else FOLLOWING
     with canvas.as_role("frame"):
-        draw_frame(canvas, entries(project, n), form, number, count, page.paper)
+        draw_frame(canvas, entries(project, n), FOLLOWING if number > 1 else project.variant.title_block.form, number, count,
+                   page.paper)
     marks = list(canvas.marks)
     views = [View(said(None), page.paper.outline, ((0, len(marks)),))]
     dimensions = list[Dimension]()
     for piece, by in page.placed:
         at = {k: len(marks) + i for i, (k, _) in enumerate(piece.marks)}
         marks += (moved(mark, by) for _, mark in piece.marks)
-        for view in sheet.views:
-            spans = tuple(span for span in (_span(at, *span) for span in view.spans) if span is not None)
-            if spans:
-                views.append(View(view.name, view.box.moved(by), spans))
+        of_views = ((view, tuple(filter(None, (_span(at, *span) for span in view.spans)))) for view in sheet.views)
+        views += (View(view.name, view.box.moved(by), spans) for view, spans in of_views if spans)
         for d in sheet.dimensions:
             whole, label = _span(at, d.first, d.end), _span(at, *d.label)
             if whole is not None and whole[1] - whole[0] == d.end - d.first:
