@@ -235,7 +235,7 @@ def drive_accelerations(acc: Accelerations, drive: Drive) -> None:
             plan.vector(f"a̅_{{{crank.pin}{here}}}^r", rest, end)
     centre = acc.normal(pole, crank.link, crank.pivot, crank.pin)
     pin = plan.add(acc.name(crank.pin), rules.LINE_LINE, end, across, centre, acc.perpendicular(crank.pivot, crank.pin))
-    plan.vector(f"a̅_{{{crank.pin}{far if drive.slides else here + far}}}^τ", end, pin)
+    plan.vector(f"a̅_{{{crank.pin if drive.slides else here}{far}}}^τ", end, pin)
     plan.vector(f"a̅_{{{crank.pin}{crank.pivot}}}^τ", centre, pin)
     _driven_pin(acc, pin)
     _driving_group(acc, drive, pin, begin, end)

@@ -228,11 +228,15 @@ def moments(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
     peak = int(np.argmax(size))
     falling = line[peak + int(np.argmax(size[peak:] < 0.6 * size[peak]))]
     canvas.label(g(falling), tr("M_{index}^{{red}}").format(index=varying), 1 - 1j if falling.imag < 0 else 1 + 1j, height=5)
-    # Where the other curve is farthest from it, rather near the end.
+    canvas.label(g(place_of_sign(line, level, length)), tr("M_{index}^{{red}}").format(index=constant), -1j if level > 0 else 1j,
+                 height=5)
+
+
+def place_of_sign(line: Points, level: float, length: float) -> complex:
+    """Place on the line of the constant moment for its sign, mm: far enough from the other curve, rather near the end."""
     share = np.linspace(0.2, 0.78, 12)
     away = np.abs(graphs.dense(line)[:, None] - (share * length + 1j * level)).min(axis=0)
-    at = share[np.argmax(np.minimum(away, CLEAR) + share)] * length + 1j * level
-    canvas.label(g(at), tr("M_{index}^{{red}}").format(index=constant), -1j if level > 0 else 1j, height=5)
+    return complex(share[np.argmax(np.minimum(away, CLEAR) + share)] * length, level)
 
 
 def axes(fw: Flywheel, of: PlayerStage, step: Step | str, g: graphs.Graph, span: tuple[float, float], ordinate: str, side: Floats,

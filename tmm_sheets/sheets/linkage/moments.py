@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 BAR = "\u0305"
-SENSE = marked("(“+”: in the sense of ω_1)")
-"""What is said of a balancing moment's sign."""
+SENSES = {False: marked("(in the sense of ω_1)"), True: marked("(against ω_1)")}
+"""What is said of a balancing moment that is held back, or not: equations take it as it is drawn, as it acts."""
 WIDTHS = (inf, 210.0, 165.0, 130.0, 105.0, 88.0)
 """Widths at which equations are broken, mm."""
 LETTERS = ((3.5, 6.0), (2.5, 4.5))
@@ -145,12 +145,11 @@ def _of_crank(project: Project) -> Iterator[str]:
         total = forces.balancing.args[0]
         terms = list(_terms(project, total)) if np.isfinite(total.at(k)) else []
         if terms:
-            # Taken to act in the sense of rotation: where it comes out negative it acts against it.
-            name, sense = balancing_sign(project), float(crank.sense)
+            name, moment = balancing_sign(project), float(project.study.balance["M"].at(k))
+            sense = -crank.sense if moment < 0 else crank.sense
             yield tr("ΣM_{centre} = {sum} = 0").format(centre=indexed(crank.pivot), sum=_sum([Term(name, sense, ()), *terms]))
             solved = [term._replace(sign=-sense * term.sign) for term in terms]
-            said = _worked_out(solved, Quantity(name, float(project.study.balance["M"].at(k)), "N*m"))
-            yield f"{said} {tr(SENSE)}"
+            yield f"{_worked_out(solved, Quantity(name, abs(moment), 'N*m'))} {tr(SENSES[moment < 0])}"
 
 
 def _guided(project: Project, g: StructuralGroup) -> Iterator[str]:
@@ -213,9 +212,9 @@ def _lever_lines(project: Project, scale: Scale) -> list[str]:
     name = flat(balancing_sign(project)) if by_moment else flat(own.symbol)
     sign = f"F_{{{name}}}" if by_moment else own.symbol.replace(BAR, "")
     arm, value = float(own.arm.at(k)), abs(complex(own.force.at(k)))
-    if by_moment:  # taken to act in the sense of rotation, like the moment that it stands for
+    if by_moment:
         moment, length = float(study.balance["M_р"].at(k)), project.mechanism.crank.length
-        arm, value = abs(complex(own.at.at(k))) * -1.0, moment / length
+        arm, value = abs(complex(own.at.at(k))) * (1.0 if moment < 0 else -1.0), abs(moment) / length
     if not terms or not np.isfinite(arm):
         return []
     turning = float(np.sign(arm))
@@ -226,8 +225,8 @@ def _lever_lines(project: Project, scale: Scale) -> list[str]:
             _worked_out(solved, result, lambda total, last: total / last, float(mm(abs(arm))))]
     if by_moment:
         m = project.mechanism.crank
-        found = Quantity(balancing_sign(project), clean(moment, study.forces.moment_size(k)), "N*m")
-        said.append(f"{equation(mul, (result, Quantity(f'l_{{{m.pivot}{m.pin}}}', m.length)), found)} {tr(SENSE)}")
+        found = Quantity(balancing_sign(project), clean(abs(moment), study.forces.moment_size(k)), "N*m")
+        said.append(f"{equation(mul, (result, Quantity(f'l_{{{m.pivot}{m.pin}}}', m.length)), found)} {tr(SENSES[moment < 0])}")
     return said
 
 
