@@ -429,7 +429,7 @@ DOORS = {
     "PDF": lambda rng: photograph.read(put("pdf", "x.pdf", rng, spoiled_pdf)),
     "kept drawings": lambda rng: sheet.loaded(cut(whole("kept"), rng)),
     "page": lambda rng: rng.choice([page_jobs.check, page_jobs.project])(asked(rng), print),
-    "server": lambda rng: (page_doors._place(edited("Группа 1/Іванов/sheet1.dxf", rng), rng.random() < 0.5)),
+    "server": lambda rng: (page_doors.place_of_file(edited("Группа 1/Іванов/sheet1.dxf", rng), rng.random() < 0.5)),
     **{kind: partial(around, fault) for kind, fault in FAULTS.items()},
 }
 """What a stranger brings to each door, and what is done with it there: nothing but its work, or words."""

@@ -70,7 +70,7 @@ class Fault(NamedTuple):
 def judged(project, n):
     """Faults of the labels of a sheet, and how many labels it has."""
     kept, windows = [], set()
-    original = placing._draw
+    original = placing.draw_label
 
     def keeping(canvas, label, box):
         windows.update(canvas.windows)
@@ -78,12 +78,12 @@ def judged(project, n):
         original(canvas, label, box)
         kept.append(Placed(label, box, [m for m in canvas.marks[first:] if isinstance(m, Line) and m.style != "text"]))
 
-    placing._draw = keeping
+    placing.draw_label = keeping
     try:
         with stored.unused():
             composed = sheet.composed(project, n)
     finally:
-        placing._draw = original
+        placing.draw_label = original
     ink = ink_index.InkIndex([m for n, m in enumerate(composed.drawing.marks[: composed.parts[-1].first]) if n not in windows])
     corners = [text_box(m) for m in composed.drawing.marks[: composed.parts[-1].first] if isinstance(m, Text)]
     written = np.array([(z.real.min(), z.imag.min(), z.real.max(), z.imag.max()) for z in corners]).reshape(-1, 4)
@@ -235,7 +235,7 @@ def _first_touched(p, own):
 
 def _runs_on(p, kept, written):
     boxes = np.vstack([written, *(q.box for q in kept if q is not p)])
-    return bool(placing._read_on(np.array(p.box)[:, None], boxes, placing.WORD * p.label.height)[0])
+    return bool(placing.reads_on(np.array(p.box)[:, None], boxes, placing.WORD * p.label.height)[0])
 
 
 def of_project(name):

@@ -78,7 +78,7 @@ def test_words_of_options(offered):
 def test_plans_and_results_are_those_that_the_commands_take(offered, monkeypatch, capsys):
     project = Project(catalogue.read("lugansk/cam_rocker"))
     plans = offered("tmm-sheets protocol lugansk/cam_rocker --plan ")
-    found, shown, _ = protocols._drawn(project)
+    found, shown, _ = protocols.drawn_plans(project)
     assert plans == [name for of_sheet in shown.values() for name in of_sheet]
     assert not [name for name in plans if "@" in name or name.endswith("-between")]
     every = offered("tmm-sheets protocol lugansk/cam_rocker --all --plan ")

@@ -22,7 +22,7 @@ from tmm_sheets.task import edited_text, family_tables
 CAM = "lugansk/cam_flat"
 ESC = "\x1b[2J\x1b]0;mine\x07"
 FAMILY = 'cipher = "ab"\nexample = "27"\n[machine.pump]\nscheme = ["pump.toml"]\ntables = ["pump.csv"]\n'
-SCHEME = (catalogue._path(CAM)).read_text(encoding="utf-8")
+SCHEME = (catalogue.shipped_path(CAM)).read_text(encoding="utf-8")
 TABLE = "key;unit;digit;0;1;2\nl;mm;a;1;2;3\n"
 WHOLE = {"f/family.toml": FAMILY, "f/pump.toml": SCHEME, "f/pump.csv": TABLE}
 GROUP = ["compare", CAM, "--group", "g", "-o", "o"]

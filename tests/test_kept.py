@@ -148,12 +148,12 @@ def test_processes_write_at_once(place):
 
 def test_the_program_is_known_by_its_content(place):
     """The same whether it was read or what was found is kept; another one for another file."""
-    program._fingerprints.cache_clear()
+    program.source_fingerprints.cache_clear()
     with kept.unused():
         read = program.program(), program.maker()
-    program._fingerprints.cache_clear()
+    program.source_fingerprints.cache_clear()
     assert (program.program(), program.maker()) == read
-    program._fingerprints.cache_clear()
+    program.source_fingerprints.cache_clear()
     assert (program.program(), program.maker()) == read
     assert program.fingerprint("a", "b") != program.fingerprint("ab")
 

@@ -58,7 +58,7 @@ def _entries(_: object) -> tuple[ShippedProject, ...]:
     for name in shipped():
         with suppress(BadInput, OSError, ValueError, LookupError, TypeError, AttributeError):  # a family is not finished yet
             folder = families.folder_of(name)
-            table = families.heading(folder, name) if folder is not None else families.table_of_heading(_path(name))
+            table = families.heading(folder, name) if folder is not None else families.table_of_heading(shipped_path(name))
             found.append(ShippedProject(name, table["title"], table.get("variant", ""), tuple(table.get("sheets", ()))))
     return tuple(found)
 
@@ -82,7 +82,7 @@ def read(project: str, corrected: bool = False, guessed: bool = True) -> Variant
         found = family.read(project, corrected)
         return found.shipped_as(found.project.name)
     if project in _files():
-        return variant.read(_path(project)).shipped_as(project)
+        return variant.read(shipped_path(project)).shipped_as(project)
     return variant.read(located(project, guessed))
 
 
@@ -122,5 +122,6 @@ def _meant(project: str, path: Path) -> str:
             tell("{command} shows the shipped projects").format(command=quoting.command("list")))
 
 
-def _path(name: str) -> Path:
+def shipped_path(name: str) -> Path:
+    """File of a shipped project."""
     return resources.variants() / f"{name}{SUFFIX}"

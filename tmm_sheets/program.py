@@ -38,16 +38,17 @@ def fingerprint(*parts: str | bytes) -> str:
 
 def program() -> str:
     """Fingerprint of this program: its version, its source and its templates."""
-    return _fingerprints()[0]
+    return source_fingerprints()[0]
 
 
 def maker() -> str:
     """Fingerprint of all that makes a drawing of the same inputs: the program, Python and the libraries it counts with."""
-    return _fingerprints()[1]
+    return source_fingerprints()[1]
 
 
 @cache
-def _fingerprints() -> tuple[str, str]:
+def source_fingerprints() -> tuple[str, str]:
+    """Fingerprints of this program's sources and libraries, and of what stands in them."""
     files = list(_files())
     stats = [entry.stat() for entry in files]
     libraries = [spec.origin for name in LIBRARIES if (spec := find_spec(name)) is not None and spec.origin]

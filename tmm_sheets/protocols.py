@@ -29,7 +29,7 @@ def lines(project: Project, name: str | None, everything: bool = False) -> Itera
     CannotBuild
         when sheets cannot be drawn: after what the others show, or at once when the plan asked for may be on one of these.
     """
-    found, shown, problem = _drawn(project)
+    found, shown, problem = drawn_plans(project)
     if name is not None:
         if name not in found:
             if problem is not None:
@@ -48,7 +48,7 @@ def lines(project: Project, name: str | None, everything: bool = False) -> Itera
 
 def names(project: Project, everything: bool = False) -> list[tuple[str, str]]:
     """Plans that the sheets show, each with its title; with ``everything`` all that there are."""
-    found, shown, _ = _drawn(project)
+    found, shown, _ = drawn_plans(project)
     drawn = {plan for of_sheet in shown.values() for plan in of_sheet}
     return [(name, plan.title) for name, (plan, _) in found.items() if everything or name in drawn]
 
@@ -72,7 +72,7 @@ def _unknown(project: Project, name: str, found: Collection[str], shown: Mapping
     return BadInput(tell('{project} has no plan "{plan}"').format(project=project.variant.called, plan=name), hint=hint)
 
 
-def _drawn(project: Project) -> tuple[dict[str, tuple[Plan, Scale | None]], dict[int, list[str]], CannotBuild | None]:
+def drawn_plans(project: Project) -> tuple[dict[str, tuple[Plan, Scale | None]], dict[int, list[str]], CannotBuild | None]:
     """Plans by name with the scale factors they are drawn with, in the order of construction; those that each sheet shows.
 
     Also why some sheets cannot be drawn.

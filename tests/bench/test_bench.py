@@ -73,10 +73,10 @@ def test_thirty_digits_of_truth(monkeypatch):
 
 
 def test_flywheel_truth_against_closed_forms():
-    first = diagrams._Shaper(diagrams._of(10)).first(mertsalov=False)
+    first = diagrams.ShaperEnergy(diagrams.shaper_of(10)).first(mertsalov=False)
     assert float(first) == pytest.approx(315.8003979742, rel=1e-12)  # by the tests of the flywheel
     t = np.linspace(0, 2 * pi, 7)
-    shaper = diagrams._Shaper(diagrams._of(10))
+    shaper = diagrams.ShaperEnergy(diagrams.shaper_of(10))
     assert [float(shaper.inertia(x)) for x in t] == pytest.approx(shaper_truth.inertia(t).tolist(), rel=1e-13)
 
 

@@ -83,13 +83,13 @@ class Hand:
         return self.drawn[id(step)]
 
     def _done(self, step: Step) -> Any:
-        if not error._numeric(step.value) or error._beyond_paper(step) or step.rule.exact:
+        if not error.is_numeric(step.value) or error.beyond_paper(step) or step.rule.exact:
             return step.value
-        args = error._on_paper(step)
+        args = error.on_paper(step)
         values = [self.drawn[id(a)] if isinstance(a, Step) else value_of(a) for a in args]
         self.errors.error(step)
         with np.errstate(all="ignore"):
-            made = self.slipped(step, values, np.array(error._replayed(step, values, self.errors._snapped(step, args))))
+            made = self.slipped(step, values, np.array(error.replayed_step(step, values, self.errors._snapped(step, args))))
         known = self.errors._known[id(step)]
         if known is not None:
             source = id(step) in self.errors._numbers

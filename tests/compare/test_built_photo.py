@@ -178,7 +178,7 @@ def test_a_line_that_is_in_its_place_speaks_against_a_mistake_that_leads_it_else
     was = next(e for e in KNOWN.elements if e.kind == "line" and e.role == "vector" and e.length > 20)
     f = judge(tracing.InkTrace(was, **{"status": "measured", **found}), 0.25, 0.15)
     way = (was.points[1] - was.points[0]) / was.length
-    assert image._stays(f, was.points + np.array(by) * way) is stays
+    assert image.stays(f, was.points + np.array(by) * way) is stays
 
 
 @pytest.mark.parametrize(("by", "told"), [
@@ -189,7 +189,7 @@ def test_a_line_that_would_run_off_the_paper_is_not_called_missing(by, told):
     was = next(e for e in KNOWN.elements if e.kind == "line" and e.role == "vector")
     f = judge(tracing.InkTrace(replace(was, points=was.points + by), "missing"), 0.25, 0.15)
     first = judge(tracing.InkTrace(was, "missing"), 0.25, 0.15)
-    judged = image._judged(f, first, SimpleNamespace(uncertainty=0.15), 0.25)
+    judged = image.judged_where_built(f, first, SimpleNamespace(uncertainty=0.15), 0.25)
     assert (judged.verdict, judged.what) == ("red", told)
     assert PAPER.contains(judged.at)  # or its number would stand off the overlay
 
@@ -207,7 +207,7 @@ def test_a_line_that_would_run_off_the_paper_is_not_called_missing(by, told):
 def test_what_was_measured_in_its_place_is_not_elsewhere(by, here, there, told):
     first = judge(tracing.InkTrace(VECTOR, **here), 0.25, 0.15)
     now = replace(VECTOR, points=VECTOR.points + by * WAY)
-    f = image._judged(judge(tracing.InkTrace(now, **there), 0.25, 0.15), first, SimpleNamespace(uncertainty=0.15), 0.25)
+    f = image.judged_where_built(judge(tracing.InkTrace(now, **there), 0.25, 0.15), first, SimpleNamespace(uncertainty=0.15), 0.25)
     assert f.verdict == told
     assert f.element is VECTOR
     assert ("as follows from the mistake" in f.what) == (told != "green")
@@ -219,8 +219,8 @@ def test_lines_in_their_places_speak_against_a_mistake(against, contradicted):
     step = errors_of(SHAPER, KNOWN)[0]["accelerations"]["k"]
     built = None, [PlanPoint(step, z, z + 3j * WAY) for z in VECTOR.points]
     stays = judge(tracing.InkTrace(VECTOR, "measured"), 0.25, 0.15)
-    assert image._contradicted(built, [red] * 3 + [stays] * against) is contradicted
-    assert not image._contradicted(built, [red] * 7 + [stays] * min(against, 1))
+    assert image.contradicted(built, [red] * 3 + [stays] * against) is contradicted
+    assert not image.contradicted(built, [red] * 7 + [stays] * min(against, 1))
 
 
 @pytest.mark.parametrize(("lines", "borne"), [
@@ -246,5 +246,5 @@ def test_a_point_that_is_off_is_told_as_one_that_others_follow_only_where_lines_
         return SimpleNamespace(element=element, verdict="red", trace=SimpleNamespace(at=ends + 1j * np.array(off)))
 
     built = (SimpleNamespace(mistake=codes.POINT_MOVED(point="a", distance=Number("3.0"))), points)
-    assert image._borne_out(built, [red(*line) for line in lines]) is borne
-    assert image._borne_out((SimpleNamespace(mistake=object()), points), [])  # one of the usual mistakes
+    assert image.borne_out(built, [red(*line) for line in lines]) is borne
+    assert image.borne_out((SimpleNamespace(mistake=object()), points), [])  # one of the usual mistakes

@@ -132,7 +132,7 @@ def test_a_frame_is_not_thrown_out_for_lines_on_both_sides_of_each(pitch, share)
     near[rows.astype(int)] = near[rows.astype(int) - 1] = 255
     p = np.repeat(594 - rows[3:-3], 8) * 1j + np.tile(np.linspace(100, 700, 8), len(rows) - 6)
     flipped = CORNERS.real + 1j * (594 - CORNERS.imag)
-    found = frame_candidates._shares(near, flipped[None], p, np.full(len(p), 1j))
+    found = frame_candidates.ink_shares(near, flipped[None], p, np.full(len(p), 1j))
     assert found == pytest.approx([share])
 
 
@@ -143,7 +143,7 @@ def test_a_frame_found_elsewhere_is_fitted_as_finely_as_the_first(monkeypatch):
 
     tried = []
     monkeypatch.setattr(rectification.frame_search, "find", nothing)
-    monkeypatch.setattr(rectification._Attempts, "finer", lambda attempts: tried.append(attempts.best))
+    monkeypatch.setattr(rectification.Attempts, "finer", lambda attempts: tried.append(attempts.best))
     found = rectification.rectify(Photograph(without_its_left_side()), known(), Path("photo.jpg"))
     assert tried[0] is None
     assert tried[-1].check is found.check

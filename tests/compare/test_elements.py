@@ -15,7 +15,7 @@ from tmm_sheets.drawing.marks import Drawing, Fill, Text
 from tmm_sheets.drawing.placing import place
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.composed import Composed
-from tmm_sheets.sheets.composing import _views
+from tmm_sheets.sheets.composing import views_of
 from tmm_sheets.sheets.sheet import composed
 
 PAPER = Box(0, 0, 200, 100)
@@ -24,7 +24,7 @@ PAPER = Box(0, 0, 200, 100)
 def sheet_of(canvas):
     canvas.begin(PAPER, "", "labels")
     place(canvas, PAPER)
-    drawing = Drawing(200, 100, "t", tuple(canvas.marks), views=_views(canvas))
+    drawing = Drawing(200, 100, "t", tuple(canvas.marks), views=views_of(canvas))
     return Composed(drawing, canvas.scales, (), tuple(canvas.parts), tuple(canvas.groups),
                     frames=tuple(canvas.frames))
 

@@ -171,12 +171,12 @@ def test_ink_on_a_circle_about_the_centre_of_another_is_told_as_a_circle(arcs, b
 
 
 def test_the_tree_has_all_ink_with_its_place():
-    judged = photo_report._Judged([line(1, 0, 50, 3j)], [ink(10 + 0.5j, 40 + 2.5j), ink(200, 220)])
-    records, start = photo_report._records(judged, {})
-    assert [x["place"] for x in photo_report._unclaimed(judged)] == [1, 2]
+    judged = photo_report.Judged([line(1, 0, 50, 3j)], [ink(10 + 0.5j, 40 + 2.5j), ink(200, 220)])
+    records, start = photo_report.recorded(judged, {})
+    assert [x["place"] for x in photo_report.unclaimed(judged)] == [1, 2]
     assert [r.beside["place"] for r in records] == [1]
     assert start == []
-    assert photo_report._extra(judged) == ["1 place with ink that is not on the sheet"]
+    assert photo_report.extra_ink(judged) == ["1 place with ink that is not on the sheet"]
 
 
 @pytest.mark.parametrize(("shift", "degrees", "verdict"), [(0, 0, "green"), (0, 12, "green"), (0.5j, 0, "amber"), (0, 20, "amber"),
@@ -218,7 +218,7 @@ def test_the_back_of_a_dog_ear_lies_where_its_corner_is_mirrored(legs, flaps, wa
     row, column = np.mgrid[: max(a, 1), : max(b, 1)]
     corner = mask[:: way[0], :: way[1]]
     corner[: max(a, 1), : max(b, 1)] = row / max(a, 1) + column / max(b, 1) < (1 if a else 0)
-    found = list(lost_ink._flaps(mask))
+    found = list(lost_ink.flaps(mask))
     assert len(found) == flaps
     if flaps:
         flap = found[0][:: way[0], :: way[1]]

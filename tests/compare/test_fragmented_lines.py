@@ -71,7 +71,7 @@ def framed(*gaps):
     (((300, 330), (500, 520)), (310 + 17j, 510 + 17j), 12),
 ])
 def test_what_covers_the_frame_hides_the_sheet_as_far_as_the_first_line_that_is_seen(gaps, seen, deep):
-    mask = lost_ink._under_covers(framed(*gaps), np.array(seen, complex), 18.0, (594, 841))
+    mask = lost_ink.under_covers(framed(*gaps), np.array(seen, complex), 18.0, (594, 841))
     assert mask.any() == bool(deep)
     for a, b in gaps if deep else ():
         column = mask[:, (a + b) // 2]
@@ -80,7 +80,7 @@ def test_what_covers_the_frame_hides_the_sheet_as_far_as_the_first_line_that_is_
 
 
 def test_a_sheet_without_a_frame_hides_nothing():
-    assert not lost_ink._under_covers(np.zeros((594 * 6, 841 * 6), np.uint8), np.zeros(0, complex), 18.0, (594, 841)).any()
+    assert not lost_ink.under_covers(np.zeros((594 * 6, 841 * 6), np.uint8), np.zeros(0, complex), 18.0, (594, 841)).any()
 
 
 @pytest.mark.parametrize("gone", [0, 5, 50])

@@ -209,4 +209,4 @@ def test_students_stand_in_the_order_of_a_register(tmp_path):
     for name in reversed(names):
         (tmp_path / name).mkdir()
         (tmp_path / name / "sheet 1.dxf").write_bytes(b"")
-    assert list(group._works(tmp_path)) == names
+    assert list(group.works_by_student(tmp_path)) == names

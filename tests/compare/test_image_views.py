@@ -141,7 +141,7 @@ def test_long_vectors_side_by_side_do_not_grow():
     along = np.arange(-100.0, 100.1, 2.0)
     p = np.concatenate([along + 1j * y for y in (-1.0, 0.0, 1.0)])
     off = np.repeat((-0.025, 0.0, 0.025), len(along))
-    step = placing._step(p, np.full(len(p), 1j), off, np.ones(len(p), bool), 0.2, free=True)
+    step = placing.similarity_step(p, np.full(len(p), 1j), off, np.ones(len(p), bool), 0.2, free=True)
     assert np.abs(step(p) - p).max() < 0.5
 
 

@@ -71,15 +71,15 @@ def test_no_mistake_is_named_that_other_numbers_speak_against(outcomes):
 
 def test_a_formula_used_wrongly_at_every_position_is_one_mistake(two_tables):
     moments = [o.judged for o in two_tables if o.cell.place.endswith("M_G2_N_m")]
-    (one,) = measured_lengths._mistakes(moments)
+    (one,) = measured_lengths.all_mistakes(moments)
     assert one.what.startswith("off at 10 positions")
     assert one.details[0].count("instead of") == 10
-    assert len(list(measured_lengths._mistakes(moments[:3]))) == 2  # at two positions: each by itself
+    assert len(list(measured_lengths.all_mistakes(moments[:3]))) == 2  # at two positions: each by itself
 
 
 def test_two_red_numbers_are_not_within_reach(two_tables):
     reds = [o.judged for o in two_tables if o.judged.verdict == "red" and not o.judged.starts and o.judged.follows is None]
     green = [o.judged for o in two_tables if o.judged.verdict == "green"]
-    assert measured_lengths._advice(green) == ["All within a pencil's reach."]
+    assert measured_lengths.advice(green) == ["All within a pencil's reach."]
     for some, said in ((reds[:1], "The red one is"), (reds[:2], "The 2 red ones are")):
-        assert measured_lengths._advice([*green, *some])[0].startswith(said)
+        assert measured_lengths.advice([*green, *some])[0].startswith(said)

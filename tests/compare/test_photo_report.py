@@ -61,14 +61,14 @@ def test_a_text_is_called_by_its_letters(name, said):
       "1 element is too near to others to be measured (plan: 1)"]),
 ])
 def test_what_could_not_be_judged_is_told_by_views_and_nothing_of_none(statuses, said):
-    judged = photo_report._Judged([finding(status, view) for status, view in statuses], [])
-    assert photo_report._hidden(judged) == said
-    assert photo_report._extra(judged) == []
+    judged = photo_report.Judged([finding(status, view) for status, view in statuses], [])
+    assert photo_report.hidden_elements(judged) == said
+    assert photo_report.extra_ink(judged) == []
 
 
 def test_numbers_on_the_overlay_stand_apart():
     flags = [overlay.Flag(k, "red", 400 + 300j + 2 * (k % 3)) for k in range(1, 13)]
-    boxes = [(n.at, n.at + complex(overlay.DIGITS * 0.62 * len(n.text), overlay.DIGITS)) for n in overlay._numbers(flags)]
+    boxes = [(n.at, n.at + complex(overlay.DIGITS * 0.62 * len(n.text), overlay.DIGITS)) for n in overlay.number_places(flags)]
     assert all(b.real <= c.real or d.real <= a.real or b.imag <= c.imag or d.imag <= a.imag
                for (a, b), (c, d) in combinations(boxes, 2))
 
@@ -91,6 +91,6 @@ def test_places_where_the_paper_bulges_are_told_in_millimetres():
 def test_the_legend_of_an_attempt_says_nothing_of_the_drawing(monkeypatch):
     said = []
     monkeypatch.setattr(overlay, "legend", lambda entries: said.append([words for _, words in entries]) or [[] for _ in entries])
-    overlay._legend()
-    overlay._legend(fitted=False)
+    overlay.legend_of()
+    overlay.legend_of(fitted=False)
     assert said == [["drawn", "exact", "wrong", "worth a look"], ["drawn", "exact", "does not fit"]]

@@ -171,9 +171,9 @@ def test_a_line_beside_an_unseen_side_tells_of_a_map_adrift(off, points, found):
     p = 30 + 575j + np.linspace(0, 60, points)
     line = profiles.ProfileLines(p, np.full(points, 1j), np.zeros(points, np.int64))
     good, some = np.full(points, off < 0.5), np.ones(points, bool)
-    assert len(fit_check._adrift(line, good, some, np.array([1.0, 1.0, 0.2, 1.0]))) == found
-    assert not len(fit_check._adrift(line, good, some, np.ones(4)))
-    assert not len(fit_check._adrift(line, good, ~some, np.array([1.0, 1.0, 0.2, 1.0])))
+    assert len(fit_check.strips_adrift(line, good, some, np.array([1.0, 1.0, 0.2, 1.0]))) == found
+    assert not len(fit_check.strips_adrift(line, good, some, np.ones(4)))
+    assert not len(fit_check.strips_adrift(line, good, ~some, np.array([1.0, 1.0, 0.2, 1.0])))
 
 
 def test_a_map_is_adrift_that_is_right_but_beside_the_unseen_side():
@@ -181,8 +181,8 @@ def test_a_map_is_adrift_that_is_right_but_beside_the_unseen_side():
     p = np.concatenate([30 + y * 1j + np.linspace(0, 60, 10) for y in (550, 555, 580)])
     line = profiles.ProfileLines(p, np.full(30, 1j), np.zeros(30, np.int64))
     good = p.imag < 570
-    assert len(fit_check._adrift(line, good, np.ones(30, bool), np.array([1.0, 1.0, 0.2, 1.0]))) == 1
-    assert not len(fit_check._adrift(line, p.imag > 552, np.ones(30, bool), np.array([1.0, 1.0, 0.2, 1.0])))
+    assert len(fit_check.strips_adrift(line, good, np.ones(30, bool), np.array([1.0, 1.0, 0.2, 1.0]))) == 1
+    assert not len(fit_check.strips_adrift(line, p.imag > 552, np.ones(30, bool), np.array([1.0, 1.0, 0.2, 1.0])))
 
 
 def test_what_a_former_fit_bent_is_not_gone_on_from():
@@ -244,7 +244,7 @@ def test_a_side_does_not_run_away_where_it_is_hidden(shown, sign):
     t = np.linspace(0.006, 0.994, 240)
     use = t <= shown
     bent = sign * (0.15 * np.sin(9 * t) + 0.3 * t**2) + np.random.default_rng(2).normal(0, 0.05, len(t))
-    fitted = np.polynomial.chebyshev.chebval(2 * t - 1, map_fit._fit_side(t, np.where(use, bent, 0.0), use, 6)[0])
+    fitted = np.polynomial.chebyshev.chebval(2 * t - 1, map_fit.fit_side(t, np.where(use, bent, 0.0), use, 6)[0])
     assert np.abs(fitted - bent)[use].max() < 0.3
     assert np.abs(fitted[~use]).max(initial=0) < np.abs(bent[use]).max()
 
@@ -370,13 +370,13 @@ def test_how_many_sides_must_be_seen(sides_seen, match, sound, acceptable):
     (0, 0, 0, 0.0), (232, 240, 0, 0.5), (232, 240, 3, 0.5), (232, 240, 4, 0.0), (236, 240, 0, 0.25), (237, 240, 0, 0.0),
 ])  # fmt: skip
 def test_a_part_of_a_side_that_is_off_tells_of_paper_that_is_not_smooth(first, last, unseen, rim):
-    from tmm_sheets.compare.photo.frame_search import _side_points
+    from tmm_sheets.compare.photo.frame_search import side_points
 
-    p, n, _ = _side_points()
+    p, n, _ = side_points()
     m = Map(0j, 1.0, homography(CORNERS, CORNERS))
     off, weight = np.zeros(len(p)), np.ones(len(p))
     off[first:last], weight[232 : 232 + unseen] = -0.5, 0.0
-    assert fit_check._rim(m, Seen(p + n * off, p, n, weight)) == pytest.approx(rim, abs=1e-6)
+    assert fit_check.rim_error(m, Seen(p + n * off, p, n, weight)) == pytest.approx(rim, abs=1e-6)
 
 
 def test_two_sides_hold_no_sheet_of_which_a_part_is_elsewhere():
@@ -387,7 +387,7 @@ def test_two_sides_hold_no_sheet_of_which_a_part_is_elsewhere():
 
 def test_what_goes_on_beyond_the_pictures_edge_is_not_seen():
     m = Map(400 + 300j, 500.0, homography((profiles.pixels(CORNERS, 1.0) - (400 + 300j)) / 500, CORNERS))  # 800 x 600 pixels
-    assert fit_check._in_picture(m, np.array([400 + 300j, 799 + 300j, 802 + 300j, 836 + 5j])).tolist() == [True, True, False, False]
+    assert fit_check.in_picture(m, np.array([400 + 300j, 799 + 300j, 802 + 300j, 836 + 5j])).tolist() == [True, True, False, False]
 
 
 @pytest.mark.parametrize(
@@ -401,7 +401,7 @@ def test_what_goes_on_beyond_the_pictures_edge_is_not_seen():
 )
 def test_a_frame_hidden_in_part_is_sought_once_more_from_the_lines(sides_seen, match, again, monkeypatch):
     asked = []
-    attempts = rectification._Attempts(np.zeros((40, 60), np.uint8), None, True)
+    attempts = rectification.Attempts(np.zeros((40, 60), np.uint8), None, True)
     check = replace(SEEN_WHOLE, sides=np.array(sides_seen, float), match=match)
     plain = Map(0j, 1.0, homography(profiles.pixels(CORNERS, 4.0), CORNERS))
     frame = FrameFit(plain, rectification.NO_SIDES, 0.1, 0.2)
@@ -409,7 +409,7 @@ def test_a_frame_hidden_in_part_is_sought_once_more_from_the_lines(sides_seen, m
     monkeypatch.setattr(rectification.frame_search, "frame_about", lambda grey, start, near: frame)
     monkeypatch.setattr(rectification.frame_search, "initial_map", lambda *_: plain)
     monkeypatch.setattr(attempts, "_without_frame", lambda m: asked.append(m) or m)
-    monkeypatch.setattr(attempts, "_fit", lambda found, fit: rectification._Attempt(found, fit, plain, check))
+    monkeypatch.setattr(attempts, "_fit", lambda found, fit: rectification.Attempt(found, fit, plain, check))
     attempts.begin(FoundFrame(profiles.pixels(CORNERS, 4.0), (), False, 1.0))
     assert bool(asked) == again
     assert attempts.best.check is check
@@ -433,7 +433,7 @@ def test_patches_shifted_alike_side_by_side_are_a_misfit(shifts, found):
     z = 100 + 100j + 45 * np.arange(len(shifts))
     picture = m.to_picture(z + 1j * np.array(shifts, float))
     seen = Seen(np.tile(picture, 2), np.tile(z, 2), np.repeat([1 + 0j, 1j], len(z)), np.ones(2 * len(z)))
-    shifted, by = fit_check._shifted(seen, m)
+    shifted, by = fit_check.patches_shifted(seen, m)
     assert len(shifted) == found
     check = replace(SEEN_WHOLE, shifted=shifted, shift=by)
     assert check.acceptable == check.sound == (not found)

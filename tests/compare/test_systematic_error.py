@@ -128,18 +128,18 @@ def test_a_table_of_another_mechanism_is_told_as_that(found, lines):
     some = [line for line in lines if line.entry.kind == "length" and line.value > 5][::2]
     judged, starts = told(found, some, lambda e, value: value * rng.uniform(1.1, 1.6))
     assert len(starts) > measured_lengths.MOST
-    (said,) = measured_lengths._advice(judged)
+    (said,) = measured_lengths.advice(judged)
     assert said.startswith("So many mistakes: was another variant drawn")
-    assert measured_lengths._summary(judged, FilledTable([]))[1] == said
+    assert measured_lengths.summary_of(judged, FilledTable([]))[1] == said
     findings, start = measured_lengths.records(judged)
-    faults, mistakes = group._faults(Report("", {}, findings=findings, start=start))
+    faults, mistakes = group.counted_faults(Report("", {}, findings=findings, start=start))
     assert [m.told.said() for m in mistakes] == [said]
     assert (start[0].remark.code, faults["mistake"]) == ("another-mechanism", len(start) - 1)
-    assert faults["mistake"] == len(measured_lengths._grouped(judged))
+    assert faults["mistake"] == len(measured_lengths.mistakes_as_told(judged))
 
 
 def test_single_mistakes_are_told_one_by_one(found, lines):
     judged, _ = told(found, lines, times(1e-3, "mm"))
     findings, start = measured_lengths.records(judged)
-    _, mistakes = group._faults(Report("", {}, findings=findings, start=start))
+    _, mistakes = group.counted_faults(Report("", {}, findings=findings, start=start))
     assert [m.told.said() for m in mistakes] == ["the numbers are written in m, not mm"]

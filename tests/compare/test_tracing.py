@@ -323,7 +323,7 @@ def test_a_line_from_the_same_pole_is_told_beside_a_vector(turn, beside):
     owners = Owners(ROWS, COLUMNS)
     for e in known:
         owners.add(e, e.points)
-    sheet = arrow_heads._Paper(paper(), owners, paper(), np.zeros((HIGH, WIDE), bool), [])
+    sheet = arrow_heads.Paper(paper(), owners, paper(), np.zeros((HIGH, WIDE), bool), [])
     assert sheet.accompanied(known[0], a, (b - a) / abs(b - a)) is beside
 
 
@@ -584,7 +584,7 @@ def test_a_bar_over_a_letter_is_no_dot(barred):
     corners = CORNER + 3 - 2j + np.array([0, 2, 2 + 4j, 4j])
     letter = Element(2, VIEW, "G", "text", corners, "text", text="G", height=4.0, marks=(Text(corners[0], "G", 4.0),),
                      pieces=(CORNER + np.array([3.5 + 3j, 4.5 + 3j]),) if barred else ())  # fmt: skip
-    bars = tracing._bars([letter], ink)
+    bars = tracing.bars([letter], ink)
     found = displaced_dots([dot(1, CORNER)], [], nothing, bars, ink, nothing, np.zeros((1, 1), bool), 180, bars=bars)
     assert bool(found) != barred
 
@@ -733,10 +733,10 @@ def test_a_line_that_others_cover_must_be_seen_to_the_dot_where_it_ends(end, dot
         owners.add(one, one.points)
         draw(ink, one.points[0], to, one.style)
     (strip,) = strips([e], ink, owners, np.zeros((1, 1), bool))
-    alone = tracing._alone(strip, np.array([CORNER] if dotted else [], complex))
+    alone = tracing.alone_on(strip, np.array([CORNER] if dotted else [], complex))
     traces = [InkTrace(one, "measured", at=one.points, darkness=usual, covered=1.0) for one in (e, along)]
     nothing = np.zeros_like(ink)
-    found = tracing._doubted(traces, {} if alone is None else {1: alone}, ink, nothing, nothing, owners, 10)
+    found = tracing.doubted(traces, {} if alone is None else {1: alone}, ink, nothing, nothing, owners, 10)
     assert [t.status for t in found] == [status, "measured"]
 
 
@@ -746,7 +746,7 @@ def test_a_line_whose_place_is_far_paler_than_its_kind_is_not_there(dark, status
     known = [line(k, 30 + 440j + 10j * k, 90 + 440j + 10j * k) for k in range(3)]
     traces = [InkTrace(e, "measured", at=e.points, darkness=d, covered=1.0) for e, d in zip(known, (dark, 100, 100), strict=True)]
     nothing, owners = np.zeros((ROWS, COLUMNS), np.uint8), Owners(ROWS, COLUMNS)
-    found = tracing._doubted(traces, {}, nothing, nothing, nothing, owners, 10)
+    found = tracing.doubted(traces, {}, nothing, nothing, nothing, owners, 10)
     assert [t.status for t in found] == [status, "measured", "measured"]
 
 
@@ -782,4 +782,4 @@ def test_a_line_that_others_hide_up_to_bare_paper_before_its_end_is_short(short,
 ])  # fmt: skip
 def test_a_line_of_which_little_is_seen_was_turned_about_an_end_that_stays(begin, end, covered, swung):
     e = line(1, CORNER, CORNER + 40)
-    assert displacement._swung(InkTrace(e, "measured", covered=covered, at=e.points + np.array([begin, end]))) is swung
+    assert displacement.swung(InkTrace(e, "measured", covered=covered, at=e.points + np.array([begin, end]))) is swung

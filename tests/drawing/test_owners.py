@@ -308,11 +308,11 @@ def test_a_leader_to_lines_that_are_nearly_one_ends_in_the_head_of_its_own(besid
     placed.place_all()
     assert placed.count_faults(0) == 0
     (at,) = placed.at
-    here = labels._surroundings(ink, at.label)
+    here = labels.surroundings(ink, at.label)
     if beside > 1.0:  # far enough apart: it has its name beside it
         assert not here.unsure
         return
-    assert labels._leader(at.label, at.box) is not None
+    assert labels.leader_to(at.label, at.box) is not None
     assert here.unsure
     assert here.head is not None
     other, *_ = (m for m in canvas.marks if isinstance(m, Line) and m.by is not None and m.by.step == "plan/1")
@@ -421,8 +421,8 @@ def test_no_place_that_was_not_judged_is_better(angles, anchor, crowd):
     wall = [Line(-30 + y * 1j, 40 + y * 1j, "main") for y in range(-21, 22, 6)] if crowd else []
     label = Label(anchor, "F_{21}", 3.5, by=fan[0].by)
     placed = labels.PlacedLabels(ink_index.InkIndex([*fan, *wall], Box(-60, -60, 60, 60)), [label])
-    places = labels._Places(placed, label, *labels._candidates(placed, [label]))
-    here = labels._surroundings(placed.ink, label)
+    places = labels.Places(placed, label, *labels.candidate_places(placed, [label]))
+    here = labels.surroundings(placed.ink, label)
     k, fault = places.choose(here)
     every = dict(zip(places.free.tolist(), places.faults(here, places.free.tolist()), strict=True))
     led = labels.CROSSING * owners.LED if here.head is None else labels.IN_HEAD

@@ -9,7 +9,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tmm_sheets.drawing.pen_paths import _travel, drop_retraced, fill_passes, join_segments, line_passes, ordered
+from tmm_sheets.drawing.pen_paths import drop_retraced, fill_passes, join_segments, line_passes, ordered, raised_travel
 
 place = st.tuples(st.integers(0, 6), st.integers(0, 6))
 path = st.lists(place, min_size=1, max_size=6).map(lambda p: (p[0], *(b for a, b in pairwise(p) if a != b)))
@@ -74,16 +74,16 @@ def test_order_keeps_every_path_and_saves_most_of_the_travel():
     some = [tuple(map(tuple, p)) for p in (rng.integers(0, 30000, (1500, 1, 2)) + rng.integers(-40, 41, (1500, 2, 2))).tolist()]
     got = ordered(some)
     assert sorted(map(sorted, got)) == sorted(map(sorted, some))
-    assert _travel(got, (0, 0)) < 1.15 * 0.7124 * np.sqrt(1500) * 30000
+    assert raised_travel(got, (0, 0)) < 1.15 * 0.7124 * np.sqrt(1500) * 30000
 
 
 def test_order_of_a_few_is_near_the_best():
     rng = np.random.default_rng(7)
     for _ in range(20):
         some = [tuple(map(tuple, rng.integers(0, 1000, (2, 2)).tolist())) for _ in range(4)]
-        best = min(_travel([p[::-1] if turn >> i & 1 else p for i, p in enumerate(order)], (0, 0))
+        best = min(raised_travel([p[::-1] if turn >> i & 1 else p for i, p in enumerate(order)], (0, 0))
                    for order in permutations(some) for turn in range(16))  # fmt: skip
-        assert best - 1e-9 <= _travel(ordered(some), (0, 0)) <= 1.6 * best
+        assert best - 1e-9 <= raised_travel(ordered(some), (0, 0)) <= 1.6 * best
 
 
 @given(st.lists(corner, min_size=3, max_size=5, unique=True), st.sampled_from([0.2, 0.3, 0.5]))
@@ -99,7 +99,7 @@ def test_passes_cover_a_thick_bent_line(corners, pen):
 def test_areas_that_are_alike_are_filled_once():
     from tmm_sheets.drawing import pen_paths
 
-    pen_paths._filled.cache_clear()
+    pen_paths.filled_paths.cache_clear()
     head = np.array([0, -4 + 0.7j, -4 - 0.7j])
     first = list(fill_passes(head, 0.2))
     for place, turn in ((30 + 20j, 1j), (7 - 3j, np.exp(0.3j)), (0, -1)):
@@ -107,7 +107,7 @@ def test_areas_that_are_alike_are_filled_once():
         assert len(found) == len(first) > 2
         for way, own in zip(found, first, strict=True):
             np.testing.assert_allclose(way, place + turn * own, atol=1e-5)
-    assert pen_paths._filled.cache_info().misses == 1
+    assert pen_paths.filled_paths.cache_info().misses == 1
 
 
 def test_passes_fill_an_area_but_for_its_acute_tips():

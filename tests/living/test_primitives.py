@@ -50,10 +50,10 @@ ELEMENTWISE = {
     "tangent": (ar.tangent_point, ("point", "point", "length", "side")),
     "tangent direction": (ar.tangent_direction, ("point", "point", "length", "side", "length", "length")),
     "value or its limit": (forces.in_limit, ("number", "known")),
-    "fraction of a swing": (loads._swung, ("direction", "side", "angle", "length")),
+    "fraction of a swing": (loads.swing_done, ("direction", "side", "angle", "length")),
     "unit": (np.vectorize(ar.unit), ("angle",)),
-    "round to a step": (np.vectorize(synthesis._nearest), ("number", "length")),
-    "15 digits": (np.vectorize(synthesis._digits), ("number",)),
+    "round to a step": (np.vectorize(synthesis.nearest_multiple), ("number", "length")),
+    "15 digits": (np.vectorize(synthesis.digits_of), ("number",)),
 }
 SHORTER = {"lines meet": (4, 5, 6), "arc cuts arc": (5, 7, 8), "arc cuts line": (5, 6), "tangent direction": (4, 6)}
 

@@ -34,11 +34,11 @@ def test_examples_are_no_worse_than_a_grid(p, command, said, tmp_path):
     found = p.optimise(asked["vary"], asked["least"], subject_to=asked["bounds"])
     assert str(found).splitlines() == said.splitlines()
     s = found.search
-    known = optimum._Known(p.project, optimum.POSITIONS)
+    known = optimum.Known(p.project, optimum.POSITIONS)
     names = tuple(dict.fromkeys(name for w in (s.wish, *(w for b in s.bounds for w in (b.left, b.right))) for name in w.names))
-    way = (optimum._Quick if s.by_function else optimum._Whole)(
+    way = (optimum.Quick if s.by_function else optimum.Whole)(
         known, s.varied, lambda c: p.with_(c).project, names)
-    grid = optimum._Asked(s.varied, s.wish, s.bounds, s.most, way, 0, lambda n: None)
+    grid = optimum.Asked(s.varied, s.wish, s.bounds, s.most, way, 0, lambda n: None)
     along = 41 if s.by_function else 11
     for shares in itertools.product(np.linspace(0, 1, along), repeat=len(s.varied)):
         grid.trial(tuple(v.at(x) for v, x in zip(s.varied, shares, strict=True)))
@@ -135,7 +135,7 @@ def test_whole_numbers_and_the_greatest(p):
 
 def test_the_function_is_not_relied_on_where_a_search_matters(p):
     """How the working stroke lies depends on the crank; the same by a project made anew."""
-    way = optimum._Quick(optimum._Known(p.project, 24), [optimum.varied("crank.length=70..90 mm", p.project.variant.data)],
+    way = optimum.Quick(optimum.Known(p.project, 24), [optimum.varied("crank.length=70..90 mm", p.project.variant.data)],
                          lambda c: p.with_(c).project, ["flywheel.J_flywheel"])
     assert not way.ready
 

@@ -78,13 +78,13 @@ def test_a_group_is_made_and_handed_in(tmp_path, monkeypatch, capsys):
     folder = tmp_path / "works" / "Шевченко"
     assert {"sheet1.svg", "OFL.txt", "note.pdf", "measured.csv", "page.html"} <= {path.name for path in folder.iterdir()}
     with pytest.raises(BadInput, match="nothing to compare"):
-        group._works(tmp_path / "works")  # nobody has filled anything in
+        group.works_by_student(tmp_path / "works")  # nobody has filled anything in
     measured = folder / measured_lengths.NAME
     lines = measured.read_text("utf-8-sig").splitlines()
     at = next(k for k, line in enumerate(lines) if line.endswith(","))
     lines[at] += "10"
     measured.write_text("\n".join(lines), encoding="utf-8")
-    assert group._works(tmp_path / "works")["Шевченко"].handed_in == [measured]
+    assert group.works_by_student(tmp_path / "works")["Шевченко"].handed_in == [measured]
     assert run(["roster", str(table), "-o", "works", "--format", "svg", "--jobs", "1"]) == 0
     assert measured.read_text("utf-8") == "\n".join(lines)
     assert run(["compare", "press", "--group", "works", "-o", "reports"]) == 0

@@ -304,12 +304,12 @@ def test_names_of_the_client_are_names():
         file = jobs.file_of(name)
         assert re.fullmatch(r"[\w@+=][\w@.+=-]*\.toml", file)
         assert len(file) < 80
-    assert doors._place("a/../../b/../c d.png", True) == "group/b/c d.png"
-    assert doors._place("..", False) == "drawing.other"
+    assert doors.place_of_file("a/../../b/../c d.png", True) == "group/b/c d.png"
+    assert doors.place_of_file("..", False) == "drawing.other"
     with pytest.raises(doors.HTTPException):
-        doors._place("../..", True)
+        doors.place_of_file("../..", True)
     for name in ("g/" + "д" * 300 + "/" + "ж" * 300 + ".dxf", "g/A/" + "b/" * 400 + "c.dxf"):
-        *folders, file = doors._place(name, True).split("/")
+        *folders, file = doors.place_of_file(name, True).split("/")
         assert file.endswith(".dxf")
         assert len(folders) == 2
         assert all(len(part.encode()) < 200 for part in (*folders, file))
@@ -419,7 +419,7 @@ def test_a_file_too_large_for_the_memory_is_stopped():
 def test_a_request_that_does_not_end_is_not_waited_for(monkeypatch):
     async def begun():
         pieces = [{"type": "http.request", "body": b"a", "more_body": True}]
-        receive = doors._counted(lambda: asyncio.sleep(0 if pieces else 60, pieces.pop() if pieces else None), 10)
+        receive = doors.limited(lambda: asyncio.sleep(0 if pieces else 60, pieces.pop() if pieces else None), 10)
         assert (await receive())["body"] == b"a"
         with pytest.raises(doors.HTTPException) as refused:
             await receive()
@@ -440,7 +440,7 @@ def test_a_connection_that_asks_for_nothing_is_closed(monkeypatch):
         await send({"type": "http.response.body"})
 
     async def all_of_them():
-        listening = serving._listening("127.0.0.1", None)
+        listening = serving.listening_socket("127.0.0.1", None)
         server = uvicorn.Server(uvicorn.Config(app, lifespan="off", log_level="critical", http=serving.patient()))
         running = asyncio.create_task(server.serve([listening]))
         ends = [await asyncio.open_connection(*listening.getsockname()) for _ in range(3)]
@@ -465,7 +465,7 @@ def test_half_requests_of_one_address_leave_room_for_whole_ones():
         await send({"type": "http.response.body"})
 
     async def all_of_them():
-        listening = serving._listening("127.0.0.1", None)
+        listening = serving.listening_socket("127.0.0.1", None)
         config = uvicorn.Config(app, lifespan="off", log_level="critical", http=serving.patient(), limit_concurrency=200)
         server = uvicorn.Server(config)
         running = asyncio.create_task(server.serve([listening]))

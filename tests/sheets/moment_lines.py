@@ -9,5 +9,5 @@ from tmm_sheets.sheets.linkage import moments
 def every_line(project: Project, *, guides: bool = False) -> Iterator[str]:
     """All equations, with those that give where the reactions of fixed ``guides`` act."""
     for g in reversed(project.mechanism.groups):  # as the reactions are found: the crank's neighbours last
-        yield from moments._of_group(project, g, guides)
-    yield from moments._of_crank(project)
+        yield from moments.group_equations(project, g, guides)
+    yield from moments.crank_equation(project)

@@ -66,7 +66,7 @@ def test_a_force_plan_comes_out_smaller_rather_than_with_small_letters_in_its_eq
     project, canvas = Project(read("transport/press@07-ЭПС-743")), Canvas()
     fp, box = project.study.forces.plans["4–5"], Box(0.0, 0.0, 103.0, 169.0)
     canvas.begin(box, "", "kinetics.group")
-    kinetics._force_plan(project, canvas, box, fp, project.force_index)
+    kinetics.force_plan_drawn(project, canvas, box, fp, project.force_index)
     lowest = min(complex(canvas.frames[-1](complex(step.at(project.force_index)))).imag
                  for step in fp.plan.steps.values() if step.rule.gives == "point")
     under = [m for m in canvas.marks if isinstance(m, Text) and m.at.imag < lowest]

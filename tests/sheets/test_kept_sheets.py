@@ -79,7 +79,7 @@ def test_remarks_are_kept_as_they_are():
     inner = Remark("group {name}", {"name": "2–3"})
     several = Remark(("{count} plan", "{count} plans"), {"count": 3, "size": 1.5}, 3)
     for remark in (inner, several, Remark("{what}!", {"what": inner})):
-        told = sheet._remark(json.loads(json.dumps(sheet._told(remark))))
+        told = sheet.remark_from_row(json.loads(json.dumps(sheet.row_of_remark(remark))))
         assert told == remark
         assert str(told) == str(remark)
 

@@ -19,7 +19,7 @@ from tmm_sheets.drawing.marks import Polyline
 from tmm_sheets.numbers import number
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import optional_views
-from tmm_sheets.sheets.composing import _code
+from tmm_sheets.sheets.composing import sheet_code
 from tmm_sheets.sheets.gears import train, train_scheme
 from tmm_sheets.sheets.linkage import diagrams, given_position, kinematics, kinetics, link_marks, moments
 from tmm_sheets.sheets.sheet import composed
@@ -37,7 +37,7 @@ def canvas_with(*lines):
 
 
 def cells(canvas):
-    return optional_views._of_part(canvas, 0, FIELD)
+    return optional_views.part_cells(canvas, 0, FIELD)
 
 
 @pytest.mark.parametrize(("lines", "found"), [
@@ -49,7 +49,7 @@ def cells(canvas):
     ([(30 + 10j, 826 + 580j)], True),  # beside a diagonal
 ], ids=["nothing", "line", "inside", "bay", "narrow", "diagonal"])  # fmt: skip
 def test_a_place_is_clear_of_all_ink_and_outside_pictures(lines, found):
-    box = optional_views._place(cells(canvas_with(*lines)), [(200.0, 120.0)], FIELD)
+    box = optional_views.place_farthest(cells(canvas_with(*lines)), [(200.0, 120.0)], FIELD)
     assert (box is not None) is found
     if box is not None:
         assert FIELD.x0 <= box.x0 < box.x1 <= FIELD.x1
@@ -65,7 +65,7 @@ def test_nothing_stands_between_the_edges_of_a_wheel(draw, free):
     canvas.begin(FIELD, "", draw)
     for y in (30.0, 560.0):
         canvas.line(complex(20, y), complex(836, y), "main")
-    assert (optional_views._place(cells(canvas), [(200.0, 120.0)], FIELD) is not None) is free
+    assert (optional_views.place_farthest(cells(canvas), [(200.0, 120.0)], FIELD) is not None) is free
 
 
 @pytest.mark.parametrize("name", ["hoist", "ferguson"])
@@ -86,27 +86,28 @@ def test_every_wheel_of_a_train_has_its_diameter_once(name):
 def test_the_next_smaller_size_is_taken_and_none_that_does_not_fit():
     canvas = canvas_with((20 + 5j, 700 + 5j), (20 + 588j, 700 + 588j), (20 + 5j, 20 + 588j), (700 + 5j, 700 + 588j))
     left = cells(canvas)
-    box = optional_views._place(left, [(200.0, 120.0), (100.0, 60.0)], FIELD)
+    box = optional_views.place_farthest(left, [(200.0, 120.0), (100.0, 60.0)], FIELD)
     assert (box.width, box.height) == (100.0, 60.0)
-    assert optional_views._place(left, [(200.0, 120.0)], FIELD) is None
-    assert optional_views._place(left | optional_views._closed(FIELD, [Box(690.0, 0.0, 836.0, 594.0)]), [(100.0, 60.0)],
-                                 FIELD) is None
+    assert optional_views.place_farthest(left, [(200.0, 120.0)], FIELD) is None
+    assert optional_views.place_farthest(
+        left | optional_views.cells_closed(FIELD, [Box(690.0, 0.0, 836.0, 594.0)]),
+        [(100.0, 60.0)], FIELD) is None
 
 
 def test_what_belongs_to_a_plan_stands_beside_it_and_not_beside_another():
-    taken = optional_views._closed(FIELD, [])
+    taken = optional_views.cells_closed(FIELD, [])
     own, other, below = Box(100.0, 300.0, 200.0, 400.0), Box(100.0, 410.0, 200.0, 500.0), Box(100.0, 200.0, 200.0, 290.0)
     spot, size = 150 + 395j, [(60.0, 80.0)]
-    assert abs(optional_views._near(taken, size, FIELD, spot, [own]).centre - spot) < 3.0
-    taken |= optional_views._closed(FIELD, [own])
-    assert optional_views._near(taken, size, FIELD, spot, [own]).y0 > own.y1  # that is nearest
-    beside = optional_views._near(taken, size, FIELD, spot, [own, other])
+    assert abs(optional_views.place_nearest(taken, size, FIELD, spot, [own]).centre - spot) < 3.0
+    taken |= optional_views.cells_closed(FIELD, [own])
+    assert optional_views.place_nearest(taken, size, FIELD, spot, [own]).y0 > own.y1  # that is nearest
+    beside = optional_views.place_nearest(taken, size, FIELD, spot, [own, other])
     assert beside.x1 < own.x0 or beside.x0 > own.x1
     assert beside.centre.imag < (own.y1 + other.y0) / 2
-    walls = taken | optional_views._closed(FIELD, [Box(20.0, 5.0, 99.0, 589.0), Box(201.0, 5.0, 836.0, 589.0)])
-    assert optional_views._near(walls, size, FIELD, spot, [own, other, below]) is None
-    far = optional_views._closed(FIELD, [Box(20.0, 5.0, 600.0, 589.0)])
-    assert optional_views._near(far, size, FIELD, spot, [own]) is None
+    walls = taken | optional_views.cells_closed(FIELD, [Box(20.0, 5.0, 99.0, 589.0), Box(201.0, 5.0, 836.0, 589.0)])
+    assert optional_views.place_nearest(walls, size, FIELD, spot, [own, other, below]) is None
+    far = optional_views.cells_closed(FIELD, [Box(20.0, 5.0, 600.0, 589.0)])
+    assert optional_views.place_nearest(far, size, FIELD, spot, [own]) is None
 
 
 @pytest.mark.parametrize(("lines", "count"), [
@@ -118,13 +119,13 @@ def test_what_belongs_to_a_plan_stands_beside_it_and_not_beside_another():
 ], ids=["nothing", "four", "narrow", "just not", "just"])  # fmt: skip
 def test_gaps_are_where_an_empty_rectangle_of_160_by_120_is(lines, count):
     canvas = canvas_with(*lines, (20 + 5j, 20 + 5j))
-    gaps = optional_views._gaps(canvas, FIELD, [], (160.0, 120.0))
-    inked = optional_views._cells(canvas, range(1), FIELD)
+    gaps = optional_views.empty_cells(canvas, FIELD, [], (160.0, 120.0))
+    inked = optional_views.inked_cells(canvas, range(1), FIELD)
     assert not (gaps & inked).any()
     nx, ny = 80, 60
     by_hand = np.zeros_like(gaps)
     for w, h in ((nx, ny), (ny, nx)):
-        for i, j in np.argwhere(optional_views._windows(sum_area(inked), w, h) == 0):
+        for i, j in np.argwhere(optional_views.window_counts(sum_area(inked), w, h) == 0):
             by_hand[i:i + w, j:j + h] = True
     assert (gaps == by_hand).all()
     if count is not None:
@@ -139,7 +140,7 @@ def test_nothing_parts_a_scheme_from_its_force_plans():
         for title, x in (("scheme", 100.0), ("plan", 500.0)):
             canvas.begin(FIELD, title)
             canvas.line(x + y - 20j, x + y + 20j, "main")
-    whole = optional_views._whole(canvas, FIELD)
+    whole = optional_views.cells_between(canvas, FIELD)
     at = {z: whole[int((z.real - FIELD.x0) / optional_views.CELL), int((z.imag - FIELD.y0) / optional_views.CELL)] for z in
           (300 + 500j, 300 + 300j, 300 + 100j, 300 + 400j, 600 + 500j)}
     assert list(at.values()) == [True, True, False, False, False]
@@ -191,7 +192,7 @@ def test_equation_of_the_lever_holds_in_the_numbers_written(name):
     p = Project(read(name))
     canvas = Canvas()
     kinetics.lever(p, canvas, Box(25.0, 9.0, 280.0, 290.0), {})
-    lines = moments._lever_lines(p, canvas.scales["lever"])
+    lines = moments.lever_lines(p, canvas.scales["lever"])
     total, arm, value = re.search(r"\((.*)\)/([\d,]+) = ([−\d,]+) Н", lines[1]).groups()
     value, arm = (float(x.replace(",", ".").replace("−", "-")) for x in (value, arm))
     terms = [part.replace(" ", "") for part in re.split(r"(?=[+−])", total) if part.strip()]
@@ -230,7 +231,7 @@ def test_designations_of_a_project_rise(name, codes):
     The screen's two kinds of sheet 2 are no two D2, and the only sheet of a project is D1.
     """
     p = Project(read(name))
-    assert [_code(p, n) for n in range(1, len(p.sheets) + 1)] == [f"Д{code}" for code in codes]
+    assert [sheet_code(p, n) for n in range(1, len(p.sheets) + 1)] == [f"Д{code}" for code in codes]
 
 
 def test_what_is_offered_is_drawn_where_there_is_room():
@@ -272,7 +273,7 @@ def test_the_curve_of_the_power_of_friction_meets_the_numbers_of_the_positions()
 def test_a_hodograph_is_closed_and_balances_the_crank(name):
     """At each position the reaction of the frame is opposite to all else on the crank; over a cycle it comes back."""
     p = Project(read(name))
-    _, step, course = diagrams._reaction(p)
+    _, step, course = diagrams.frame_reaction(p)
     size = np.abs(course).max()
     crank = p.mechanism.crank
     others = sum(load.vector.value for load in p.study.forces.loads[crank.link] if load.vector is not step)
@@ -285,7 +286,7 @@ def test_a_hodograph_numbers_the_positions_of_every_turn_where_their_force_ends(
     p = Project(read(str(Path(__file__).parents[1] / "projects" / "pump.toml")))
     canvas = canvas_with()
     diagrams.bearing(p, canvas, Box(100.0, 100.0, 260.0, 260.0), {})
-    _, step, _ = diagrams._reaction(p)
+    _, step, _ = diagrams.frame_reaction(p)
     frame = canvas.frames[-1]
     there = {label: frame.origin + complex(z) / frame.mu[0] for label, z in zip(p.cycle.labels, step.value, strict=True)}
     said = {}
@@ -304,7 +305,7 @@ def test_a_hodograph_numbers_the_positions_of_every_turn_where_their_force_ends(
 def test_a_load_that_jumps_where_the_cycle_begins_leaves_no_gap_in_the_hodograph(swings):
     """The press ends its stroke under the full force and begins the next without one; a swing does not come back."""
     p = Project(read("press"))
-    _, _, course = diagrams._reaction(p)
+    _, _, course = diagrams.frame_reaction(p)
     p.__dict__["cycle"] = replace(p.cycle, swings=swings)
     canvas = canvas_with()
     diagrams.bearing(p, canvas, Box(100.0, 100.0, 260.0, 260.0), {})
@@ -323,7 +324,7 @@ def test_nothing_stands_between_a_title_and_the_plans_of_several_positions():
         canvas.begin(Box(x, 100.0, x + 80.0, 280.0), "Plan of a position")
         canvas.line(complex(x, 110.0), complex(x + 80.0, top), "vector")
     canvas.begin(FIELD, "", "other view")
-    taken = optional_views._of_part(canvas, 1, FIELD)
+    taken = optional_views.part_cells(canvas, 1, FIELD)
     assert taken[int((440 - FIELD.x0) / 2), int((265 - FIELD.y0) / 2)]
     assert taken[int((300 - FIELD.x0) / 2), int((265 - FIELD.y0) / 2)]
     assert not taken[int((600 - FIELD.x0) / 2), int((265 - FIELD.y0) / 2)]
@@ -343,7 +344,7 @@ def test_a_force_is_not_parted_from_its_value(width):
 def test_the_table_of_given_sizes_holds_what_the_task_gives(name, lengths):
     """Every number but zero, once, as it is in the mechanism; one that a synthesis has found has its letters too."""
     project = Project(read(name))
-    rows = list(given_position._quantities(project))
+    rows = list(given_position.given_quantities(project))
     signs = [sign.split(", ")[0] for sign, _ in rows]
     assert lengths <= set(signs)
     assert len(rows) == len(set(rows))
@@ -352,7 +353,7 @@ def test_the_table_of_given_sizes_holds_what_the_task_gives(name, lengths):
     assert bool(masses) == any(link.mass for link in m.links.values())
     assert not {"0", "−0"} & {value for _, value in rows}
     assert number(float(m.crank.length)) in {value for sign, value in rows if sign.endswith(", м")}
-    for size, cells, row in given_position._forms(project):
+    for size, cells, row in given_position.table_forms(project):
         assert size[1] == pytest.approx(8.0 + row * len(cells))
         assert sum(cell != "" for line in cells[1:] for cell in line) == 2 * len(rows)
 

@@ -65,15 +65,15 @@ def test_every_mark_is_on_one_page_as_large_as_on_the_sheet(told, n):
 
 def test_what_does_not_touch_does_not_meet():
     project = opened("lugansk/shaper", format="A2")
-    page = pages._pages(list(pages._pieces(composed(project, 1))), paper("A2"), "1")[0]
+    page = pages.pages_of(list(pages.pieces_of(composed(project, 1))), paper("A2"), "1")[0]
     for (a, by), (b, other) in combinations(page.placed, 2):
-        assert not pages._near(a.ink.moved(by), b.ink.moved(other), pages.APART - 1e-3)
+        assert not pages.near(a.ink.moved(by), b.ink.moved(other), pages.APART - 1e-3)
 
 
 def test_pages_are_even_and_begin_as_the_sheet_does():
     project = opened("lugansk/shaper", orientation="portrait")
     upright = paper("A1", True)
-    made = pages._pages(list(pages._pieces(composed(project, 1))), upright, "1")
+    made = pages.pages_of(list(pages.pieces_of(composed(project, 1))), upright, "1")
     assert [page.paper for page in made] == [upright, upright]
     assert all(page.area > upright.width * upright.height / 3 for page in made)
     first = min(made[0].placed, key=lambda placed: placed[0].begin)
@@ -86,7 +86,7 @@ def test_pages_are_even_and_begin_as_the_sheet_does():
 
 def test_what_stands_in_a_gap_of_another_is_on_its_page():
     project = opened("lugansk/shaper", orientation="portrait")
-    made = pages._pages(list(pages._pieces(composed(project, 2))), paper("A1", True), "1")
+    made = pages.pages_of(list(pages.pieces_of(composed(project, 2))), paper("A1", True), "1")
     pieces = [(k, piece) for k, page in enumerate(made) for piece, _ in page.placed]
     among = [(a, b) for (a, one), (b, other) in combinations(pieces, 2)
              if one.ink.contains(other.ink.centre) or other.ink.contains(one.ink.centre)]

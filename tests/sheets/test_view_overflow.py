@@ -192,8 +192,8 @@ def test_marks_lie_in_their_rectangles():
     curve = np.array([1 + 2j, 5 - 3j, 4 + 9j])
     marks = [Line(3 + 4j, -1 + 8j, "main"), Text(10 + 5j, "h_1", 3.5), Text(10 + 5j, "Ag", 5.0, 1.2), Polyline(curve, "thin"),
              Fill(curve, "thin"), Arc(2 + 2j, 5.0, 0.3, 1.1, "main")]
-    found = sheets._rectangles(marks)
+    found = sheets.rectangles_of(marks)
     for mark, own in zip(marks[:-1], found, strict=False):
         assert own == pytest.approx(Box.around(text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)))
     assert found[-1] == pytest.approx((-3.0, -3.0, 7.0, 7.0))
-    assert sheets._rectangles([]).shape == (0, 4)
+    assert sheets.rectangles_of([]).shape == (0, 4)

@@ -222,7 +222,7 @@ SPOILT = {
     "weight upwards": (forces, "WEIGHT", lambda m, g: 1j * m * g, "power = change of energy"),
     "arm of a couple on the lever": (zhukovsky, "COUPLE_FORCE", lambda m, x, y: 1j * m * ar.ray(x, y), "lever = kinetostatics"),
     "tangential part towards the other side": (
-        forces, "TANGENTIAL", lambda *z: -forces._tangential(*z), "moments on every link"),
+        forces, "TANGENTIAL", lambda *z: -forces.tangential_part(*z), "moments on every link"),
     "half-chord from the rounded pin": (positions.Positions, "crossing", None, "velocity at a dead position"),
 }
 """Where a rule is spoilt, how, and the invariant that must tell."""

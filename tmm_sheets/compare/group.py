@@ -218,7 +218,7 @@ def compare(folder: Path, project: str, opened: Callable[[str], Project], judged
     BadInput
         If there is no such folder, nothing to compare in it, or ``projects.toml`` cannot be read.
     """
-    works = _works(folder)
+    works = works_by_student(folder)
     projects = _projects(folder / PROJECTS, works)
     made = {}
 
@@ -241,7 +241,7 @@ def compare(folder: Path, project: str, opened: Callable[[str], Project], judged
 
 def with_mark(report: Report, scheme: MarkingScheme) -> Report:
     """The report on one file with its mark: below the table, on its pages, in the JSON."""
-    work = Student("", "", (Judgement("", *_faults(report), report=report),))
+    work = Student("", "", (Judgement("", *counted_faults(report), report=report),))
     mark = scheme.mark(work.faults)
     grade = scheme.grade(mark)
     lost = [f"{said} {scheme.counted(kind, n)}" for (kind, n), said in zip(work.faults.items(), called_kinds(), strict=True)
@@ -260,7 +260,7 @@ class Work(NamedTuple):
     made: list[Path]
 
 
-def _works(folder: Path) -> dict[str, Work]:
+def works_by_student(folder: Path) -> dict[str, Work]:
     """Files by student, both in the order of their names; a folder without any is that of a student who handed in nothing."""
     if not folder.is_dir():
         raise BadInput(Problem(tell("is no folder"), str(folder)))
@@ -341,7 +341,7 @@ def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project], 
         if os.environ.get("TMM_SHEETS_TRACEBACK"):
             raise
         return Judgement(file, {"unjudged": 1}, refused=tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}"))
-    faults, mistakes = _faults(report)
+    faults, mistakes = counted_faults(report)
     return Judgement(file, faults, mistakes, report=report)
 
 
@@ -349,7 +349,7 @@ MISSING: Mapping[str, FaultKind] = {"view-missing": "missing_view", "table-missi
 """Kinds of faults that have findings of their own."""
 
 
-def _faults(report: Report) -> tuple[dict[FaultKind, int], tuple[FindingRecord, ...]]:
+def counted_faults(report: Report) -> tuple[dict[FaultKind, int], tuple[FindingRecord, ...]]:
     """Faults of each kind, and the mistakes; what follows from one, and views that were built on one, are no others."""
     mistakes = tuple(r for r in report.start if r.remark.code not in MISSING)
     built = {r.view for r in report.findings if r.whole}

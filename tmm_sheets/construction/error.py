@@ -234,12 +234,12 @@ class Errors:
         """The step done again from other values of its :meth:`arguments`."""
         self._note_lengths(step)
         with np.errstate(all="ignore"):
-            return _replayed(step, values, self._snapped(step, self.arguments(step)))
+            return replayed_step(step, values, self._snapped(step, self.arguments(step)))
 
     def arguments(self, step: Step) -> tuple[Any, ...]:
         """Arguments as a pencil knows them: not those that only spare rounding, the points of a curve in its place."""
         if id(step) not in self._arguments:
-            self._arguments[id(step)] = _on_paper(step)
+            self._arguments[id(step)] = on_paper(step)
         return self._arguments[id(step)]
 
     def scale(self, step: Step) -> float:
@@ -269,12 +269,12 @@ class Errors:
         """None for what has no error: given numbers and directions, what no pencil draws, and values that are no numbers."""
         self._note_lengths(step)
         value = step.value
-        if not _numeric(value) or _beyond_paper(step) or step.rule.exact or np.asarray(value).dtype.kind == "i":
+        if not is_numeric(value) or beyond_paper(step) or step.rule.exact or np.asarray(value).dtype.kind == "i":
             return None  # numbers of teeth have no error either
         if step.rule.compute is take:
             return self._taken(step)
-        args = _on_paper(step)
-        base = np.atleast_1d(_replayed(step, [value_of(a) for a in args], {}))
+        args = on_paper(step)
+        base = np.atleast_1d(replayed_step(step, [value_of(a) for a in args], {}))
         if base.shape != (np.size(step.value),):
             return None
         snapped = self._snapped(step, args)
@@ -328,7 +328,7 @@ class Errors:
         moves: list[tuple[int, Floats]] = []
         for i, a in enumerate(args):
             known = self._known[id(a)] if isinstance(a, Step) else None
-            if isinstance(a, Step) and (not _numeric(a.value) or np.size(a.value) > np.size(step.value)):
+            if isinstance(a, Step) and (not is_numeric(a.value) or np.size(a.value) > np.size(step.value)):
                 continue  # a whole curve at once: its error is that of the line drawn along it
             if known is not None or i in ends:
                 error = np.zeros(1) if known is None else known.error
@@ -354,7 +354,7 @@ class Errors:
             spread = np.trace(lines, axis1=1, axis2=2) / 2
             crossing = ~(spread < 1 - 1e-9) & _all_lines(through)
             return np.asarray(np.where(crossing[:, None, None], lines, np.eye(2)) * pencil)
-        if step.rule.gives in _MEASURED and any(map(self._is_drawn, _on_paper(step))):
+        if step.rule.gives in _MEASURED and any(map(self._is_drawn, on_paper(step))):
             return np.diag([1.0, 0.0])[None] * pencil
         return np.zeros((1, 2, 2))
 
@@ -442,17 +442,18 @@ def _takes(step: Step) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _numeric(value: Any) -> bool:
+def is_numeric(value: Any) -> bool:
+    """Whether a value is a number or an array of numbers."""
     return isinstance(value, int | float | complex | np.number | np.ndarray) and np.asarray(value).dtype.kind in "ifc"
 
 
-def _beyond_paper(step: Step) -> bool:
+def beyond_paper(step: Step) -> bool:
     """True for a step that is known better than paper shows, or made from such only."""
     made_of = [a for a in step.args if isinstance(a, Step)]
-    return step.rule.beyond_paper or (bool(made_of) and all(_beyond_paper(a) for a in made_of))
+    return step.rule.beyond_paper or (bool(made_of) and all(beyond_paper(a) for a in made_of))
 
 
-def _on_paper(step: Step) -> tuple[Any, ...]:
+def on_paper(step: Step) -> tuple[Any, ...]:
     """Arguments without those that a pencil does not know; they are optional and stand last.
 
     In the place of a curve stand the points and slopes it was drawn through: their errors go on along it.
@@ -460,23 +461,23 @@ def _on_paper(step: Step) -> tuple[Any, ...]:
     found: list[Any] = []
     for a in step.args:
         if _is_curve(a):
-            found += _on_paper(a)
-        elif not (isinstance(a, Step) and _beyond_paper(a)):
+            found += on_paper(a)
+        elif not (isinstance(a, Step) and beyond_paper(a)):
             found.append(a)
     return tuple(found)
 
 
 def _folded(step: Step, values: list[Any]) -> list[Any]:
-    """Values of the arguments as the rule takes them, from those of :func:`_on_paper`: curves drawn again."""
+    """Values of the arguments as the rule takes them, from those of :func:`on_paper`: curves drawn again."""
     if not any(map(_is_curve, step.args)):
         return values
     found, rest = [], list(values)
     for a in step.args:
         if _is_curve(a):
-            n = len(_on_paper(a))
+            n = len(on_paper(a))
             found.append(a.rule.compute(*_folded(a, rest[:n])))
             rest = rest[n:]
-        elif not (isinstance(a, Step) and _beyond_paper(a)):
+        elif not (isinstance(a, Step) and beyond_paper(a)):
             found.append(rest.pop(0))
     return found
 
@@ -498,7 +499,7 @@ def _derivatives(step: Step, args: tuple[Any, ...], base: Any, moves: list[tuple
             shifts += [(i, unit, h) for unit in ((1.0, 1j) if value.dtype.kind == "c" else (1.0,))]
     replays = _all_at_once(step, values, shifts, snapped, base)
     if replays is None:
-        replays = [_replayed(step, [v + s * _like(h, v) * unit if j == i else v for j, v in enumerate(values)], snapped)
+        replays = [replayed_step(step, [v + s * _like(h, v) * unit if j == i else v for j, v in enumerate(values)], snapped)
                    for i, unit, h in shifts for s in (1, -1)]
     found: dict[int, Matrices] = {}
     bend = np.zeros(1)
@@ -519,7 +520,7 @@ def _derivatives(step: Step, args: tuple[Any, ...], base: Any, moves: list[tuple
 def _all_at_once(step: Step, values: list[Any], shifts: list[tuple[int, Any, Floats]], snapped: Mapping[int, tuple[int, Any]],
                  base: Any) -> Any:
     """All replays of a rule that works entry by entry, shape (2 m, n); None for a rule that does not."""
-    rows: list[Any] = [np.atleast_1d(v)[None] if _numeric(v) else v for v in values]
+    rows: list[Any] = [np.atleast_1d(v)[None] if is_numeric(v) else v for v in values]
     count = 2 * len(shifts) + 1
     for k, (i, unit, h) in enumerate(shifts):
         if len(rows[i]) != count:
@@ -527,7 +528,7 @@ def _all_at_once(step: Step, values: list[Any], shifts: list[tuple[int, Any, Flo
         rows[i][2 * k] += h * unit
         rows[i][2 * k + 1] -= h * unit
     try:
-        found = np.asarray(_replayed(step, rows, snapped))
+        found = np.asarray(replayed_step(step, rows, snapped))
     except (TypeError, ValueError, IndexError):
         return None
     if found.shape != (count, len(base)) or not np.array_equal(found[-1], base, equal_nan=True):
@@ -540,7 +541,7 @@ def _like(h: Floats, value: Any) -> Any:
     return h if np.ndim(value) or len(h) > 1 else h[0]
 
 
-def _replayed(step: Step, values: list[Any], snapped: Mapping[int, tuple[int, Any]]) -> Any:
+def replayed_step(step: Step, values: list[Any], snapped: Mapping[int, tuple[int, Any]]) -> Any:
     """The step's rule once more, with other values, and points at known distances kept there."""
     values = list(values)
     for i, (first, distance) in snapped.items():

@@ -93,7 +93,7 @@ def set_labels(canvas: Canvas, ink: InkIndex, final: bool = True) -> list[Crowde
         if placed.improve_all(around):  # what makes way may let others stand better
             placed.improve_all(around)
     for label, box, *_ in placed.at:
-        _draw(canvas, label, box)
+        draw_label(canvas, label, box)
     ink.add(canvas.marks[first:])
     crowded = [Crowded(label.text, label.anchor) for label, at in zip(canvas.labels, placed.at, strict=True) if not at.free]
     canvas.labels.clear()
@@ -123,7 +123,7 @@ class PlacedLabels:
         self.at[k:k + 1] = [placement]
         label, box, *_ = placement
         self.boxes[k] = box
-        before, led = self._led.pop(k, None), _leader(label, box)
+        before, led = self._led.pop(k, None), leader_to(label, box)
         if led is not None:
             self._led[k] = led
         if before is not None or led is not None:
@@ -165,7 +165,7 @@ class PlacedLabels:
             return over
         led = label, start, end = self.at[k].label, *self._led[k]
         if led not in self._unsure:
-            here = _surroundings(self.ink, label)
+            here = surroundings(self.ink, label)
             self._unsure[led] = int(here.count_unsure(here.first_met(np.array([start]), np.array([end])))[0])
         written = ink_index.enters(start, end - start, *self.written.T)
         written[len(written) - len(self.boxes) + k] = False
@@ -175,7 +175,7 @@ class PlacedLabels:
         """Whether label ``k`` has no leader and is read as another's, because of one or where its vector is one with another."""
         label, box, _, unsure = self.at[k]
         return k not in self._led and (unsure or (len(ink_index.find_near(self.leaders.T, box, NEAR)) > 0
-                                                  and bool(_surroundings(self.ink, label).misreading(box))))
+                                                  and bool(surroundings(self.ink, label).misreading(box))))
 
     def in_conflict(self, k: int) -> list[int]:
         """Labels whose leader or lettering the leader of label ``k`` meets, and those whose leader meets its lettering."""
@@ -203,7 +203,7 @@ class PlacedLabels:
         """Set labels one after another."""
         for begin in range(0, len(self.labels), TOGETHER):
             some = self.labels[begin:begin + TOGETHER]
-            tried = _candidates(self, some)
+            tried = candidate_places(self, some)
             first = _first_places(self, some, tried)
             for k, (label, candidates, box) in enumerate(zip(some, tried, first, strict=True), begin):
                 if box is not None and self._is_left_alone(box, label, begin, k):
@@ -237,7 +237,7 @@ class PlacedLabels:
             around is CLOSER and (self.set_alone(k) or any(self.make_room(*pair) for pair in ways[1:])))
 
     def _place_again(self, k: int, around: Around) -> None:
-        (candidates,) = _candidates(self, [self.labels[k]], around)
+        (candidates,) = candidate_places(self, [self.labels[k]], around)
         self.put(k, _place(self, self.labels[k], candidates, around))
 
     def set_again(self, some: tuple[int, ...], around: Around, first: Placement | None = None, well: bool = False) -> bool:
@@ -278,9 +278,9 @@ class PlacedLabels:
         before, label = [self.at[k], self.at[q]], self.labels[k]
         for n in (k, q):
             self.lift(n)
-        (candidates,) = _candidates(self, [label], CLOSER)
-        places = _Places(self, label, candidates)
-        rooms = [*islice(places.well_apart(_surroundings(self.ink, label)), ROOMS)]
+        (candidates,) = candidate_places(self, [label], CLOSER)
+        places = Places(self, label, candidates)
+        rooms = [*islice(places.well_apart(surroundings(self.ink, label)), ROOMS)]
         self._put_back((k, q), before)
         return any(self.set_again((k, q), CLOSER, Placement(label, places.box(at), True), well=True) for at in rooms)
 
@@ -299,7 +299,7 @@ class _Candidates(NamedTuple):
     around: Box
 
 
-def _candidates(placed: PlacedLabels, labels: Sequence[Label], around: Around = USUAL) -> list[_Candidates]:
+def candidate_places(placed: PlacedLabels, labels: Sequence[Label], around: Around = USUAL) -> list[_Candidates]:
     """Places about the anchors of some labels, judged together."""
     if not labels:
         return []
@@ -352,7 +352,7 @@ def _first_places(placed: PlacedLabels, labels: Sequence[Label], tried: Sequence
     return found
 
 
-class _Places:
+class Places:
     """Where a label may stand about its anchor: rectangles ``sides`` (x0, y0, x1, y1; shape (4, n)), their ``cost``, and
     numbers of the ``free`` ones, the cheapest first.
     """
@@ -367,7 +367,7 @@ class _Places:
         some = free if len(free) else np.arange(len(cost))  # what the others would cost nobody asks
         there = self.sides[:, some]
         gap = WORD * label.height
-        read_on = _read_on(there, placed.written[ink_index.find_near(placed.written.T, around, gap)], gap)
+        read_on = reads_on(there, placed.written[ink_index.find_near(placed.written.T, around, gap)], gap)
         more = cost[some] + RUN_ON * read_on
         leaders = placed.leaders[ink_index.find_near(placed.leaders.T, around, CLEAR)]
         if len(leaders):
@@ -424,7 +424,7 @@ class _Places:
             found[alone] += np.where(bad, MISREAD, VAGUE * vague)
         if len(led):
             if label.shelf:
-                p, q = np.array([_leader(label, self.box(some[k])) for k in led.tolist()]).T
+                p, q = np.array([leader_to(label, self.box(some[k])) for k in led.tolist()]).T
             else:
                 p, q = np.full(len(led), label.anchor), owners.nearest(label.anchor, sides[:, led])
             written = self._placed.written
@@ -460,14 +460,15 @@ def _overlap(sides: npt.NDArray[np.float64], boxes: npt.NDArray[np.float64]) -> 
     return np.asarray(((x0 < b[2]) & (x1 > b[0]) & (y0 < b[3]) & (y1 > b[1])).any(axis=1))
 
 
-def _read_on(sides: npt.NDArray[np.float64], boxes: npt.NDArray[np.float64], gap: float) -> npt.NDArray[np.bool_]:
+def reads_on(sides: npt.NDArray[np.float64], boxes: npt.NDArray[np.float64], gap: float) -> npt.NDArray[np.bool_]:
     """Which of them have one of the boxes on their level nearer than ``gap``."""
     x0, y0, x1, y1 = sides
     level = 0.4 * (y1 - y0)  # an index of the one beside the bar of the other is not yet a word
     return _overlap(np.array([x0 - gap, y0 + level, x1 + gap, y1 - level]), boxes)
 
 
-def _draw(canvas: Canvas, label: Label, box: Box) -> None:
+def draw_label(canvas: Canvas, label: Label, box: Box) -> None:
+    """Draw a label where it stands, with its leader."""
     laid, shelf = letter(label.text, label.height), SHELF * bool(label.shelf)
     canvas.of, first = label.of, len(canvas.marks)
     with canvas.traced("text", *(label.by[1:] if label.by is not None else ())):
@@ -483,17 +484,17 @@ def _draw(canvas: Canvas, label: Label, box: Box) -> None:
 
 def _place(placed: PlacedLabels, label: Label, candidates: _Candidates, around: Around) -> Placement:
     """Place of a label, which may have moved along the vector it names rather than have a leader; whether there is room for it."""
-    places, here = _Places(placed, label, candidates), _surroundings(placed.ink, label)
+    places, here = Places(placed, label, candidates), surroundings(placed.ink, label)
     k, fault = places.choose(here)
     found = Placement(label, places.box(places.cheapest() if k is None else k), bool(len(places.free)))
     vague, sure = 0 < fault <= VAGUE, not here.unsure
     cost = fault if k is None else float(places.cost[k]) + fault
     unread = k is None or fault > VAGUE
-    if unread or places.run_on[k] or vague or _leader(*found[:2]) is not None:
+    if unread or places.run_on[k] or vague or leader_to(*found[:2]) is not None:
         along = [label._replace(anchor=anchor) for anchor in here.places_along()]
-        for moved, tried in zip(along, _candidates(placed, along, around), strict=True):
-            others = _Places(placed, moved, tried)
-            beside = _surroundings(placed.ink, moved)
+        for moved, tried in zip(along, candidate_places(placed, along, around), strict=True):
+            others = Places(placed, moved, tried)
+            beside = surroundings(placed.ink, moved)
             of_vector = beside.vector is not None  # so near to its end a leader would name the point
             there, fault = others.choose(beside, unread and of_vector, cost)
             sure = sure or (of_vector and not beside.unsure)
@@ -506,7 +507,7 @@ def _place(placed: PlacedLabels, label: Label, candidates: _Candidates, around: 
     return found._replace(unsure=sure and here.runs_together())
 
 
-def _surroundings(ink: InkIndex, label: Label) -> owners.Surroundings:
+def surroundings(ink: InkIndex, label: Label) -> owners.Surroundings:
     """What is near the anchor of a label, as far as it may stand from there; of lines on the ink it is looked for once."""
     found: owners.Surroundings | None = ink.surroundings.get(label)
     if found is None:
@@ -516,7 +517,7 @@ def _surroundings(ink: InkIndex, label: Label) -> owners.Surroundings:
     return found
 
 
-def _leader(label: Label, box: Box) -> tuple[complex, complex] | None:
+def leader_to(label: Label, box: Box) -> tuple[complex, complex] | None:
     """From the anchor to the nearest point of lettering that stands too far to be read without a leader; None if it does not.
 
     Or from the edge of what is named to its shelf.
@@ -535,7 +536,7 @@ def _shelf_ends(box: Box) -> tuple[complex, complex]:
 
 def _draw_leader(canvas: Canvas, label: Label, box: Box) -> None:
     """Thin line to lettering that needs a leader, and the shelf under it."""
-    if (led := _leader(label, box)) is None:
+    if (led := leader_to(label, box)) is None:
         return
     start, end = led
     if label.shelf:

@@ -56,14 +56,15 @@ def fill_passes(points: Points, pen: float) -> Iterator[Points]:
     shape = points - points[0]
     far = complex(shape[np.argmax(np.abs(shape))])
     turn = far / abs(far) if far else 1.0 + 0j
-    ways = _filled(tuple(np.round(shape / turn, SHAPE_DECIMALS).tolist()), pen)
+    ways = filled_paths(tuple(np.round(shape / turn, SHAPE_DECIMALS).tolist()), pen)
     yield from (points[0] + turn * way for way in ways)
     if not ways:  # thinner than the pen
         yield _diagonal(points, pen)
 
 
 @lru_cache(maxsize=256)
-def _filled(shape: tuple[complex, ...], pen: float) -> tuple[Points, ...]:
+def filled_paths(shape: tuple[complex, ...], pen: float) -> tuple[Points, ...]:
+    """Passes of a pen of this width, mm, that fill a shape."""
     return tuple(_passes(np.array(shape), pen))
 
 
@@ -190,11 +191,11 @@ def plan(drawing: Drawing, plotter: Plotter, window: Box | None = None) -> PenPl
     for pen in order:
         if not lines[pen] and not areas[pen]:
             continue
-        before += _travel(lines[pen], last)
+        before += raised_travel(lines[pen], last)
         last = lines[pen][-1][-1] if lines[pen] else last
         single = list(drop_retraced(lines[pen]))
         paths = ordered(join_segments(single), place)
-        after += _travel(paths, place)
+        after += raised_travel(paths, place)
         place = paths[-1][-1] if paths else place
         ink_once = sum(map(_path_length, single))
         doubled += sum(map(_path_length, lines[pen])) - ink_once
@@ -373,7 +374,7 @@ def _path_length(path: Path) -> float:
     return sum(dist(a, b) for a, b in pairwise(path))
 
 
-def _travel(paths: Iterable[Path], start: Step) -> float:
+def raised_travel(paths: Iterable[Path], start: Step) -> float:
     """Travel of the raised pen, plotter steps."""
     some = list(paths)
     return sum(dist(place, path[0]) for place, path in zip([start, *(path[-1] for path in some)], some, strict=False))

@@ -235,20 +235,20 @@ def optimum(project: Project, changed: Callable[[Mapping[str, Any]], Project], v
         raise BadInput(tell("{name} is varied twice").format(name=twice[0]), tell("give one range for each number"))
     if not some:
         raise BadInput(tell("nothing is varied"), tell("for example {wish}").format(wish='--vary "crank.length=70..90 mm"'))
-    known = _Known(project, positions)
+    known = Known(project, positions)
     wishes = wish(aim, known.names), tuple(bound(text, known.names) for text in subject_to)
     names = tuple(dict.fromkeys(name for w in (wishes[0], *(w for b in wishes[1] for w in (b.left, b.right))) for name in w.names))
 
-    def found(way: _Whole) -> Optimum:
-        return _Asked(some, *wishes, most, way, tries, say).run()
+    def found(way: Whole) -> Optimum:
+        return Asked(some, *wishes, most, way, tries, say).run()
 
-    quick = _Quick(known, some, changed, names)
+    quick = Quick(known, some, changed, names)
     if quick.ready and quick.keeps((best := found(quick)).best.numbers):
         return best
-    return found(_Whole(known, some, changed, names))
+    return found(Whole(known, some, changed, names))
 
 
-class _Known:
+class Known:
     """The results of the project as it is, and the crank angles that results are looked at."""
 
     def __init__(self, project: Project, positions: int) -> None:
@@ -267,10 +267,10 @@ class _Known:
         return dict(leaves(results.told(project, parts, phi=self.angles if {*parts} & {*OF_LINKAGE} else None)))
 
 
-class _Whole:
+class Whole:
     """Numbers of a project made anew for each try."""
 
-    def __init__(self, known: _Known, some: Sequence[Varied], changed: Callable[[Mapping[str, Any]], Project],
+    def __init__(self, known: Known, some: Sequence[Varied], changed: Callable[[Mapping[str, Any]], Project],
                  names: Sequence[str]) -> None:
         self.known, self.some, self.changed, self.names = known, some, changed, names
 
@@ -288,7 +288,7 @@ class _Whole:
         return {name: getattr(told.get(name), "value", told.get(name)) for name in self.names}
 
 
-class _Quick(_Whole):
+class Quick(Whole):
     """Numbers by one function of the crank angle and what is varied, made of the steps of the project as it is.
 
     What a search found stays in it as it was. Hence it is relied on only where it gives, at the ends of all ranges, what a project
@@ -297,7 +297,7 @@ class _Quick(_Whole):
 
     ready = False
 
-    def __init__(self, known: _Known, some: Sequence[Varied], changed: Callable[[Mapping[str, Any]], Project],
+    def __init__(self, known: Known, some: Sequence[Varied], changed: Callable[[Mapping[str, Any]], Project],
                  names: Sequence[str]) -> None:
         super().__init__(known, some, changed, names)
         if {name.partition(".")[0] for name in names} - {*KINEMATIC} or any(v.whole for v in some):
@@ -339,10 +339,10 @@ class _Quick(_Whole):
         return all(np.allclose(quick[name], whole[name], rtol=SAME, atol=SAME * np.max(np.abs(whole[name]))) for name in self.names)
 
 
-class _Asked:
+class Asked:
     """Tries, each made once."""
 
-    def __init__(self, some: tuple[Varied, ...], aim: Wish, bounds: tuple[Bound, ...], most: bool, way: _Whole, tries: int,
+    def __init__(self, some: tuple[Varied, ...], aim: Wish, bounds: tuple[Bound, ...], most: bool, way: Whole, tries: int,
                  say: Callable[[int], None]) -> None:
         self.some, self.aim, self.bounds, self.most, self.way, self.tries, self.say = some, aim, bounds, most, way, tries, say
         self.made: dict[tuple[float, ...], Trial] = {}
@@ -360,7 +360,7 @@ class _Asked:
                               tell("nearest come {numbers}").format(numbers=", ".join(
                                   f"{v.name} = {v.value(x)}" for v, x in zip(self.some, best.numbers, strict=True))))
         trials = tuple(self.made.values())
-        return Optimum(self.some, self.aim, self.most, self.bounds, trials, best, self._now(), isinstance(self.way, _Quick))
+        return Optimum(self.some, self.aim, self.most, self.bounds, trials, best, self._now(), isinstance(self.way, Quick))
 
     def trial(self, numbers: tuple[float, ...]) -> Trial:
         """What comes of some numbers."""

@@ -142,7 +142,7 @@ async def _asked(request: Request) -> tuple[dict[str, str], TemporaryDirectory[s
                     with path.open("wb") as file:
                         while piece := await value.read(1 << 20):
                             file.write(piece)
-                    place = _place(str(value.filename or ""), request.path_params.get("job") == "group")
+                    place = place_of_file(str(value.filename or ""), request.path_params.get("job") == "group")
                     here = alike(f"{place}/")
                     if any(here.startswith(other) or other.startswith(here) for other in (alike(f"{name}/") for name in files)):
                         raise HTTPException(422, tell("two files of one name: {name}").format(name=place))
@@ -164,7 +164,7 @@ LONGEST_PART, LONGEST_ENDING = 80, 8
 """Letters of the name of a file or folder that is kept here, and of its ending."""
 
 
-def _place(name: str, of_group: bool) -> str:
+def place_of_file(name: str, of_group: bool) -> str:
     """Where a file goes: of a group into the folder of its student; the client's name is made of letters and figures."""
     parts = [re.sub(r"[^\w @.+=,()-]+", "-", part).strip(" -") for part in normalize("NFC", name).replace("\\", "/").split("/")]
     parts = [part for part in parts if part.strip(".")]
@@ -336,7 +336,7 @@ class Guard:
 
         inside = {**scope, "path": f"/{path}", "raw_path": f"/{path}".encode(), "root_path": ""}
         with suppress(CancelledError):  # the server is ended, which is no mistake
-            await self.app(inside, _counted(receive, most), answer)
+            await self.app(inside, limited(receive, most), answer)
 
     def _refused(self, method: str, token: str, headers: Mapping[str, str], most: int) -> tuple[int, str] | None:
         """Status and words for whoever may not come in."""
@@ -375,7 +375,7 @@ def is_local(host: str) -> bool:
         return host == "localhost"
 
 
-def _counted(receive: Receive, most: int) -> Receive:
+def limited(receive: Receive, most: int) -> Receive:
     """Take no more than so many bytes, whatever was announced, and wait for them no longer than is sensible."""
     taken, clock = 0, asyncio.get_running_loop().time
     until: float | None = clock() + LONGEST

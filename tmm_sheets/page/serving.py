@@ -53,7 +53,7 @@ def serve(shown: Shown, host: str, port: int | None, tell_address: Callable[[str
 
     from tmm_sheets.page import doors, workers
 
-    listening = _listening(host, port)
+    listening = listening_socket(host, port)
     token = token_urlsafe(24)
     named = {"0.0.0.0": "127.0.0.1", "::": "[::1]"}.get(host, f"[{host}]" if ":" in host else host)
     app = doors.app(token, host, shown)
@@ -110,7 +110,7 @@ def patient() -> type[asyncio.Protocol]:
     return Patient
 
 
-def _listening(host: str, port: int | None) -> socket.socket:
+def listening_socket(host: str, port: int | None) -> socket.socket:
     """A socket that listens: at the port asked for, else at ours or at a free one."""
     if not host:
         raise BadInput(Problem(tell("expected an address, such as 127.0.0.1"), "--host"))

@@ -49,7 +49,7 @@ def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:
     found: dict[tuple[str, Box], Leaving] = {}
     views = _boxes_of_views(canvas)
     titles = {part.box: part.title for part in reversed(canvas.parts) if part.title}
-    rectangles = _rectangles(canvas.marks)
+    rectangles = rectangles_of(canvas.marks)
     for k, (lines, labels) in enumerate(_ink(canvas)):
         part = canvas.parts[k]
         if part.draw in ("title block", "labels"):
@@ -68,7 +68,7 @@ def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:
     return list(found.values())
 
 
-def _rectangles(marks: Sequence[Mark]) -> NDArray[np.float64]:
+def rectangles_of(marks: Sequence[Mark]) -> NDArray[np.float64]:
     """Rectangles that marks are in: x0, y0, x1, y1 of each, shape (n, 4); of an arc that of its circle."""
     found = np.empty((len(marks), 4))
     straight, texts = dict[int, tuple[complex, complex]](), dict[int, Text]()
@@ -216,7 +216,7 @@ def composed(project: Project, n: int) -> Composed:
     drawing = Drawing(
         WIDTH, HEIGHT, title, tuple(canvas.marks), project.variant.title_block.student or "tmm_sheets",
         subject=" ".join(filter(None, (fields["designation"], fields["group"]))), keywords=", ".join(map(tr, KEYWORDS)),
-        views=_views(canvas), dimensions=tuple(canvas.dimensions), forms=tuple(canvas.forms))
+        views=views_of(canvas), dimensions=tuple(canvas.dimensions), forms=tuple(canvas.forms))
     left = leaving(canvas, INSIDE, TITLE_BLOCK)
     project.shown.add(n)
     flat = function("diagrams.too_flat")(project) if "hodograph.bearing" in (view.draw for view in plan.offers) else ()
@@ -259,7 +259,7 @@ def entries(project: Project, n: int) -> dict[str, str]:
     """What the title block of sheet ``n`` is filled in with, by the names of its fields."""
     written = project.variant.title_block
     return {
-        "designation": written.designated(_code(project, n)),
+        "designation": written.designated(sheet_code(project, n)),
         "title": tr(arrangement(project.sheets[n - 1]).fitted(project.parts).title),
         "project": of_file(project.variant.project.title),
         "letter": written.letter,
@@ -281,14 +281,14 @@ def shortened(project: Project) -> list[str]:
     return [str(Shortened(text, TITLE_BLOCK.centre, left)) for text, left in found.items()]
 
 
-def _code(project: Project, n: int) -> str:
+def sheet_code(project: Project, n: int) -> str:
     """Code of sheet ``n`` in the designations: its arrangement's; its number where it is the only one or these do not rise."""
     codes = [arrangement(name).code for name in project.sheets]
     rising = all(int(a[1:]) < int(b[1:]) for a, b in pairwise(codes)) if all(code[1:].isdecimal() for code in codes) else False
     return tr(codes[n - 1]) if rising and len(codes) > 1 else tr("D{number}").format(number=n)
 
 
-def _views(canvas: Canvas) -> tuple[View, ...]:
+def views_of(canvas: Canvas) -> tuple[View, ...]:
     """The views of a sheet, each with its labels; what one draws before its first title belongs to that title.
 
     Views of one name are numbered. Parts without marks or labels are no views.

@@ -51,16 +51,16 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside:
     A view tells its sizes, from what it wants down to what it can do with, and perhaps the left edge that it would like best or
     what it belongs to: it stands near that or nowhere, and those that do so choose first.
     """
-    taken = _closed(inside, closed)
+    taken = cells_closed(inside, closed)
     seen, forces = 0, _of_forces(canvas, inside)
-    whole, drawn = (_whole(canvas, inside, lettering) for lettering in (True, False))
+    whole, drawn = (cells_between(canvas, inside, lettering) for lettering in (True, False))
     for view, wanted in _wanted(project, canvas, offered):
         for k in range(seen, len(canvas.parts)):
-            taken |= _of_part(canvas, k, inside)
+            taken |= part_cells(canvas, k, inside)
         seen = len(canvas.parts)
         if view.kind.near:
             spot, own, others = function(view.kind.near)(project, canvas, view.options)
-            box = _near(taken, wanted, inside, spot, [_ink_box(canvas, k, inside) for k in (own, *others)])
+            box = place_nearest(taken, wanted, inside, spot, [_ink_box(canvas, k, inside) for k in (own, *others)])
         else:
             at = function(view.kind.left)(view.options) if view.kind.left else None
             # Nothing parts a loaded scheme from its force plans, and kinematics stand among the forces only where there is no other
@@ -68,9 +68,10 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside:
             # may stand there.
             stands = view.kind.stands
             room = taken | (drawn if stands == "table" else whole)
-            first = (room | ~_gaps(canvas, inside, closed, sides) for sides in LARGE) if stands in ("anywhere", "table") else \
-                iter([room | forces] if view.needs == "positions" else [])
-            box = next((box for part in chain(first, [room]) if (box := _place(part, wanted, inside, at)) is not None), None)
+            first = (room | ~empty_cells(canvas, inside, closed, sides) for sides in LARGE) \
+                if stands in ("anywhere", "table") else iter([room | forces] if view.needs == "positions" else [])
+            box = next((box for part in chain(first, [room])
+                        if (box := place_farthest(part, wanted, inside, at)) is not None), None)
         if box is not None:
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
@@ -88,15 +89,15 @@ def _wanted(project: Project, canvas: Canvas, offered: Sequence[ViewPlace]) -> I
             yield view, wanted
 
 
-def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float, float]) -> Taken:
+def empty_cells(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float, float]) -> Taken:
     """Cells of empty rectangles of these sides, mm, lying or upright."""
-    inked = _closed(inside, closed)
-    inked |= _cells(canvas, range(len(canvas.parts)), inside)
+    inked = cells_closed(inside, closed)
+    inked |= inked_cells(canvas, range(len(canvas.parts)), inside)
     gaps = np.zeros(inked.shape, bool)
     table = sum_area(inked)
     for size in (sides, sides[::-1]):
         nx, ny = (int(np.ceil(length / CELL)) for length in size)
-        begins = _windows(table, nx, ny) == 0
+        begins = window_counts(table, nx, ny) == 0
         # How many of them have a corner here, with its sign: summed up, how many lie over a cell.
         count = np.zeros(np.add(inked.shape, 1), np.int32)
         for (i, j), sign in {(0, 0): 1, (nx, 0): -1, (0, ny): -1, (nx, ny): 1}.items():
@@ -105,7 +106,7 @@ def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float
     return gaps
 
 
-def _windows(table: Counts, nx: int, ny: int) -> Counts:
+def window_counts(table: Counts, nx: int, ny: int) -> Counts:
     """How many cells are taken of each rectangle of so many cells, by its lower left one; of their summed-area table."""
     return np.asarray(table[nx:, ny:] - table[:-nx, ny:] - table[nx:, :-ny] + table[:-nx, :-ny])
 
@@ -119,7 +120,7 @@ def _free(table: Counts, sizes: Sequence[tuple[float, float]]) -> Iterator[tuple
         return
     # Where the least of all is not free nothing is: the whole sheet is looked at once, for each size only what is left of it.
     least = min(nx for nx, _ in steps.values()), min(ny for _, ny in steps.values())
-    i, j = (_windows(table, *least) == 0).nonzero()
+    i, j = (window_counts(table, *least) == 0).nonzero()
     if not len(i):
         return
     flat, wide = table.ravel(), table.shape[1]
@@ -132,7 +133,7 @@ def _free(table: Counts, sizes: Sequence[tuple[float, float]]) -> Iterator[tuple
             yield size, apart, np.array([x[free], y[free]]).T
 
 
-def _place(taken: Taken, sizes: Sequence[tuple[float, float]], inside: Box, left: float | None = None) -> Box | None:
+def place_farthest(taken: Taken, sizes: Sequence[tuple[float, float]], inside: Box, left: float | None = None) -> Box | None:
     """The first of the sizes for which there is room beside the cells ``taken``, where it is farthest from all else.
 
     With the edge ``left``, mm, where there is room for any of them with it.
@@ -156,7 +157,8 @@ def _middle(cells: Taken) -> NDArray[np.float64]:
     return np.asarray((ordered[(n - 1) // 2] + ordered[n // 2]) / 2)
 
 
-def _near(taken: Taken, sizes: Sequence[tuple[float, float]], inside: Box, spot: complex, pictures: Sequence[Box]) -> Box | None:
+def place_nearest(taken: Taken, sizes: Sequence[tuple[float, float]], inside: Box, spot: complex,
+                  pictures: Sequence[Box]) -> Box | None:
     """The place nearest to a spot of the first picture, no nearer to the others, of the first size that has one in reach."""
     wanted, allowed = CLOSE
     second = None
@@ -188,17 +190,17 @@ def _off(z: Points, box: Box) -> NDArray[np.float64]:
 
 def _ink_box(canvas: Canvas, k: int, inside: Box) -> Box:
     """What a part's ink takes."""
-    i, j = np.nonzero(_cells(canvas, range(k, k + 1), inside))
+    i, j = np.nonzero(inked_cells(canvas, range(k, k + 1), inside))
     return Box(*(float(edge) for edge in (inside.x0 + CELL * i.min(), inside.y0 + CELL * j.min(),
                                           inside.x0 + CELL * (i.max() + 1), inside.y0 + CELL * (j.max() + 1))))
 
 
-def _whole(canvas: Canvas, inside: Box, lettering: bool = True) -> Taken:
+def cells_between(canvas: Canvas, inside: Box, lettering: bool = True) -> Taken:
     """Cells between the pictures of one view of forces: a loaded scheme and its force plans; ``lettering`` is part of them."""
-    taken = _closed(inside, [])
+    taken = cells_closed(inside, [])
     for begin, end in pairwise([*(k for k, part in enumerate(canvas.parts) if not part.title), len(canvas.parts)]):
         if _picture(canvas.parts[begin]) == "force plans":
-            picture = _cells(canvas, range(begin, end), inside, lettering)
+            picture = inked_cells(canvas, range(begin, end), inside, lettering)
             taken |= _between(picture, 0)[1] | _between(picture, 1)[1]
     return taken
 
@@ -214,22 +216,22 @@ def _of_forces(canvas: Canvas, inside: Box) -> Taken:
     alone = [part.box for part in canvas.parts if _picture(part) == "forces"]
     hull = [Box(min(b.x0 for b in boxes), min(b.y0 for b in boxes), max(b.x1 for b in boxes), max(b.y1 for b in boxes))] \
         if boxes else []
-    return _closed(inside, [*hull, *alone])
+    return cells_closed(inside, [*hull, *alone])
 
 
-def _closed(inside: Box, closed: Sequence[Box]) -> NDArray[np.bool_]:
+def cells_closed(inside: Box, closed: Sequence[Box]) -> NDArray[np.bool_]:
     """Cells of the sheet, those within boxes ``closed`` to views taken."""
     cells = Cells(inside, CELL)
     cells.add_boxes(np.reshape(closed, (-1, 4)))
     return cells.taken
 
 
-def _of_part(canvas: Canvas, k: int, inside: Box) -> NDArray[np.bool_]:
+def part_cells(canvas: Canvas, k: int, inside: Box) -> NDArray[np.bool_]:
     """Cells with ink of a part of a view, or between its ink: within its picture nothing else may stand."""
     part = canvas.parts[k]
     if part.draw == "title block":
-        return _closed(inside, [])
-    own = _cells(canvas, range(k, k + 1), inside)
+        return cells_closed(inside, [])
+    own = inked_cells(canvas, range(k, k + 1), inside)
     along, across = _between(own, 0), _between(own, 1)
     taken = along[0] | across[0] | along[1] & across[1]
     if _picture(part) == "wheels":
@@ -238,14 +240,14 @@ def _of_part(canvas: Canvas, k: int, inside: Box) -> NDArray[np.bool_]:
         # A title is that of all parts up to the next one: plans of several positions.
         after = (n for n in range(k + 1, len(canvas.parts)) if canvas.parts[n].headed or canvas.parts[n].draw != part.draw)
         whole = range(k, next(after, len(canvas.parts))) if part.headed else range(k, k + 1)
-        picture = _between(_cells(canvas, whole, inside), 0)[1] if len(whole) > 1 else own
+        picture = _between(inked_cells(canvas, whole, inside), 0)[1] if len(whole) > 1 else own
         taken |= _under_title(picture)
         if len(whole) > 1:
             taken |= _between(picture, 1)[1]
     return taken
 
 
-def _cells(canvas: Canvas, parts: range, inside: Box, lettering: bool = True) -> NDArray[np.bool_]:
+def inked_cells(canvas: Canvas, parts: range, inside: Box, lettering: bool = True) -> NDArray[np.bool_]:
     """Cells with ink of parts that follow each other, or under their labels not set yet; without ``lettering`` lines alone."""
     taken = np.zeros((int(inside.width / CELL), int(inside.height / CELL)), bool)
     for k in parts:

@@ -100,7 +100,7 @@ def on_paper(project: Project, n: int, composed: Composed) -> tuple[list[Drawing
     if table.usual:
         return [composed.drawing], []
     wanted = paper(table.format, table.orientation == "portrait")
-    pages = _pages(list(_pieces(composed)), wanted, project.variant.title_block.form)
+    pages = pages_of(list(pieces_of(composed)), wanted, project.variant.title_block.form)
     told = [tell('view "{title}" is on {larger}: {paper} has no room for its {width:.0f} x {height:.0f} mm').format(
                 title=piece.title, larger=page.paper.name, paper=wanted.name, width=piece.ink.width, height=piece.ink.height)
             for page in pages if page.paper.name != wanted.name for piece, _ in page.placed]
@@ -110,7 +110,7 @@ def on_paper(project: Project, n: int, composed: Composed) -> tuple[list[Drawing
 # --- what stands together -------------------------------------------------------------------------------------------------
 
 
-def _pieces(composed: Composed) -> Iterator[Piece]:
+def pieces_of(composed: Composed) -> Iterator[Piece]:
     """The views of a sheet without its frame, each with its labels."""
     marks, parts = composed.drawing.marks, composed.parts
     for a, b in pairwise(k for k, part in enumerate(parts) if not part.title):
@@ -144,7 +144,7 @@ def _together(pieces: Iterable[Piece], one: Callable[[Piece, Piece], bool]) -> l
     return found
 
 
-def _near(a: Box, b: Box, apart: float = 0.0) -> bool:
+def near(a: Box, b: Box, apart: float = 0.0) -> bool:
     """Whether two rectangles are less than so far from each other."""
     return min(a.x1, b.x1) - max(a.x0, b.x0) > -apart + 1e-6 and min(a.y1, b.y1) - max(a.y0, b.y0) > -apart + 1e-6
 
@@ -152,7 +152,7 @@ def _near(a: Box, b: Box, apart: float = 0.0) -> bool:
 # --- pages ----------------------------------------------------------------------------------------------------------------
 
 
-def _pages(pieces: Sequence[Piece], asked: Paper, first: str) -> list[PaperPage]:
+def pages_of(pieces: Sequence[Piece], asked: Paper, first: str) -> list[PaperPage]:
     """As few pages as the pieces take in the order of the sheet, and of as few pages the most even ones.
 
     Pages follow each other as their first pieces do on the sheet, larger paper last.
@@ -170,7 +170,7 @@ def _pages(pieces: Sequence[Piece], asked: Paper, first: str) -> list[PaperPage]
             (piece.parted() for piece in inside),
             lambda a, b: touch(a, b) and Box.around(np.concatenate((a.ink.corners, b.ink.corners))) in (a.ink, b.ink))
     # What stands in the gaps of something stays there, if that makes it no larger than a page.
-    units = _together(units, lambda a, b: _near(a.ink, b.ink) and bool(_filled([a.with_other(b)], [asked], first)))
+    units = _together(units, lambda a, b: near(a.ink, b.ink) and bool(_filled([a.with_other(b)], [asked], first)))
     units.sort(key=lambda unit: (not has_room(unit), unit.begin))
     pages = min((_shared(units, asked, first, share / 20 * asked.width * asked.height) for share in range(1, 21)),
                 key=lambda pages: (len(pages), sum(page.area**2 for page in pages)))
@@ -214,7 +214,7 @@ def _spread(page: PaperPage, form: str) -> PaperPage:
                   for piece, by in page.placed]
         right, low = max(box.x1 for box in places), min(box.y0 for box in places)
         there = [box.moved(complex(share_x * (inside.x1 - right), -share_y * (low - inside.y0))) for box in places]
-        if right <= inside.x1 and low >= inside.y0 and not any(_near(a, b, APART) for a in there for b in closed):
+        if right <= inside.x1 and low >= inside.y0 and not any(near(a, b, APART) for a in there for b in closed):
             return PaperPage(page.paper, [(piece, complex(box.x0 - piece.ink.x0, box.y1 - piece.ink.y1))
                                      for (piece, _), box in zip(page.placed, there, strict=True)])
     return page
@@ -228,7 +228,7 @@ def _put(piece: Piece, page: PaperPage, form: str) -> bool:
                              sorted({inside.x0, *(box.x1 + APART for box in closed)})):
         by = complex(left - ink.x0, top - ink.y1)
         there = ink.moved(by)
-        if there.x1 <= inside.x1 and there.y0 >= inside.y0 and not any(_near(there, box, APART) for box in closed):
+        if there.x1 <= inside.x1 and there.y0 >= inside.y0 and not any(near(there, box, APART) for box in closed):
             page.placed.append((piece, by))
             return True
     return False

@@ -62,7 +62,7 @@ def stored(sheet: Composed) -> bytes:
         "parts": sheet.parts, "groups": sheet.groups,
         "leaving": [[s.title, s.by, s.side, s.over, s.scales] for s in sheet.leaving],
         "frames": sheet.frames, "symbols": dict(sheet.symbols),
-        "remarks": [[_told(remark) for remark in some] for some in (sheet.dead, sheet.left_out, sheet.illegible)],
+        "remarks": [[row_of_remark(remark) for remark in some] for some in (sheet.dead, sheet.left_out, sheet.illegible)],
     }  # fmt: skip
     text = json.dumps(tree, ensure_ascii=False, separators=(",", ":"), default=_plain).encode()
     numbers = np.concatenate([np.zeros(0, complex), *points]).view(float).astype(NUMBERS)
@@ -87,7 +87,7 @@ def _sheet(tree: dict[str, Any], points: Any) -> Composed:
         forms=tuple(Form(name, first, end, tuple(FormField(field, a, b, complex(*at), size, angle)
                                                  for field, a, b, at, size, angle in fields))
                     for name, first, end, fields in tree["forms"]))
-    dead, left_out, illegible = (tuple(map(_remark, some)) for some in tree["remarks"])
+    dead, left_out, illegible = (tuple(map(remark_from_row, some)) for some in tree["remarks"])
     return Composed(
         drawing, {name: Scale(*scale) for name, scale in tree["scales"].items()},
         tuple(Shortened(text, complex(*at), *left) if left else Crowded(text, complex(*at)) for text, at, *left in tree["crowded"]),
@@ -156,14 +156,16 @@ def _numbered(values: Sequence[Any]) -> tuple[list[Any], list[int]]:
     return [*numbers], [numbers[value] for value in values]
 
 
-def _told(remark: Remark) -> list[Any]:
-    return [remark.text, {name: {"remark": _told(value)} if isinstance(value, Remark) else value
+def row_of_remark(remark: Remark) -> list[Any]:
+    """A remark as it is kept."""
+    return [remark.text, {name: {"remark": row_of_remark(value)} if isinstance(value, Remark) else value
                           for name, value in remark.values.items()}, remark.count]
 
 
-def _remark(row: Sequence[Any]) -> Remark:
+def remark_from_row(row: Sequence[Any]) -> Remark:
+    """A remark from what is kept of it."""
     text, values, count = row
-    found = {name: _remark(value["remark"]) if isinstance(value, dict) else value for name, value in values.items()}
+    found = {name: remark_from_row(value["remark"]) if isinstance(value, dict) else value for name, value in values.items()}
     return Remark(text if isinstance(text, str) else _pair(text), found, count)
 
 

@@ -222,7 +222,7 @@ def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, 
         motion = straight_motion(mechanism, cycle, f.point, sense, cycle.strokes, f.first).within(f.from_, f.to)
         toward = sense if toward is None else toward
         against = AGAINST.get(str(f.direction))
-        laws, signs = _by_run(motion, f.stroke, tables, against, f.name)
+        laws, signs = by_run(motion, f.stroke, tables, against, f.name)
         law, jumps = stroke_law(motion, laws, signs, f.curve == "smooth", against is None and f.tables is not None)
     along = GivenPoint(toward, f"force[{i}].direction", "", "", of.variant.source("force", i, "direction"))
     return Applied(f.name, f.link, f.point, toward, law, jumps, motion, diagrams, along)
@@ -281,13 +281,13 @@ def _moment(of: Givens, plan: Plan, i: int, m: MomentTable, mechanism: Mechanism
             raise CannotBuild(*_no_strokes(m.name))
         sense = -1 if m.sense == "clockwise" else 1
         motion = turning_motion(mechanism, cycle, m.link, sense, m.first)
-        laws, signs = _by_run(motion, m.stroke, tables, AGAINST.get(m.direction), m.name)
+        laws, signs = by_run(motion, m.stroke, tables, AGAINST.get(m.direction), m.name)
         law, jumps = stroke_law(motion, laws, [s * (sense if fixed is None else fixed) for s in signs], m.curve == "smooth")
     return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion, _diagrams(of, plan, m, tables, rule, numbers, "moment", i),
                    sign=sign)
 
 
-def _by_run(motion: OutputMotion, stroke: str, tables: Sequence[Table | None], against: float | None, name: str) -> tuple[
+def by_run(motion: OutputMotion, stroke: str, tables: Sequence[Table | None], against: float | None, name: str) -> tuple[
         list[Table | None], list[float]]:
     """Diagram of each run, that of its stroke, and sign: it follows the motion unless the direction is fixed."""
     strokes = len({run.stroke for run in motion.runs})

@@ -127,7 +127,7 @@ def folders() -> dict[str, Path]:
     for place in _places():
         for file in sorted(place.glob(f"*/{FILE}")) if place.is_dir() else ():
             found.setdefault(file.parent.resolve().name, file.parent)
-    for name, folder in _installed():
+    for name, folder in installed_families():
         found.setdefault(name, folder)
     return {name: folder for name, folder in found.items() if name not in known()}
 
@@ -155,7 +155,7 @@ def _folder(name: str) -> Path | None:
     for place in _places():
         if (place / name / FILE).is_file():
             return place / name
-    return dict(_installed()).get(name)
+    return dict(installed_families()).get(name)
 
 
 def _places() -> Iterator[Path]:
@@ -170,7 +170,7 @@ def _places() -> Iterator[Path]:
 
 
 @cache
-def _installed() -> tuple[tuple[str, Path], ...]:
+def installed_families() -> tuple[tuple[str, Path], ...]:
     """Families of other packages: an entry point is a path, or a package whose folder it is."""
     from importlib.metadata import entry_points
 

@@ -67,7 +67,7 @@ class Row:
             when there is none, or nothing stands there.
         """
         figure = "".join(digits[letter] for letter in self.digit)
-        column = next((head for head in self.cells if not self.digit or _holds(head, figure)), None)
+        column = next((head for head in self.cells if not self.digit or holds_figure(head, figure)), None)
         if column is None or not self.cells[column]:
             raise BadInput(Problem(tell("nothing for {digit} = {figure}").format(digit=self.digit, figure=figure), self.file,
                                    self.line, self.key))
@@ -87,7 +87,7 @@ class Row:
         return f"{value} {self.unit}".rstrip()
 
 
-def _holds(head: str, figure: str) -> bool:
+def holds_figure(head: str, figure: str) -> bool:
     """Whether a column, or a row, is that of a figure."""
     low, dots, high = (part.strip() for part in head.partition(".."))
     ends = (low, figure, high if dots else low)

@@ -15,7 +15,7 @@ from tests.project_files import known
 from tmm_sheets.construction.rules import LINE_LINE
 from tmm_sheets.methods.linkage.motion import CORIOLIS, acceleration_plan, velocity_plan
 from tmm_sheets.methods.linkage.positions import position_plan
-from tmm_sheets.sheets.linkage.kinematics import _hinges
+from tmm_sheets.sheets.linkage.kinematics import hinges
 
 
 @pytest.fixture(scope="module", params=["lugansk/shaper", "sixbar/3:5", "loom", "sieve.toml", "planer.toml", "conveyor.toml",
@@ -90,4 +90,4 @@ def test_sliders_on_moving_guides_have_position_numbers(name, sliders):
     m = known(name).mechanism
     fixed = {p for g in m.groups for p, guide in g.kind.guided(g) if m.guides[guide].link == m.frame}
     inner = {g.inner for g in m.groups if g.inner}
-    assert set(_hinges(m, fixed)) & (inner | fixed) == sliders
+    assert set(hinges(m, fixed)) & (inner | fixed) == sliders

@@ -23,7 +23,7 @@ from tmm_sheets.methods.linkage.loads import OutputMotion, stroke_law, turning_m
 from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.project import Project
-from tmm_sheets.task.assembly import _by_run
+from tmm_sheets.task.assembly import by_run
 
 TURN = np.linspace(0, 2 * pi, 360, endpoint=False)
 
@@ -142,7 +142,7 @@ def law_of(direction, stroke="both", within=(0.0, 1.0)):
 
     runs = runs_of(dwelling)
     motion = OutputMotion(over_cycle(in_strokes(runs, way([r.begin for r in runs])), 2 * pi), way, 2 * pi).within(*within)
-    laws, signs = _by_run(motion, stroke, [([0.0], [10.0])], {"against": -1.0, "along": 1.0}.get(direction), "F")
+    laws, signs = by_run(motion, stroke, [([0.0], [10.0])], {"against": -1.0, "along": 1.0}.get(direction), "F")
     return stroke_law(motion, laws, signs)
 
 
@@ -325,7 +325,7 @@ def test_a_moment_against_a_link_with_many_reversals(sense, shape):
     cycle = even_cycle(m, 0.0, 12)
     turned = TURN + 0.00123
     motion = turning_motion(m, cycle, "5", sense)
-    laws, signs = _by_run(motion, "both", [([0.0], [10.0])], -1.0, "M")
+    laws, signs = by_run(motion, "both", [([0.0], [10.0])], -1.0, "M")
     law, _ = stroke_law(motion, laws, signs)
     ahead, behind = (seen(m, turned + s * 1e-6)[0] for s in (1, -1))
     np.testing.assert_array_equal(sense * law(turned, 0), -10 * np.sign(ahead - behind))

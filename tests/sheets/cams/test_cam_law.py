@@ -12,9 +12,9 @@ from tests import labels
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.methods.cams.cam_laws import LAWS, PositionFunction
-from tmm_sheets.sheets.cams.cam_law import _forms, _phases, _written
+from tmm_sheets.sheets.cams.cam_law import formula_layouts, phases_of, written
 
-FORMS = [name for name, law in LAWS.items() if _written(law)]
+FORMS = [name for name, law in LAWS.items() if written(law)]
 
 TOKEN = re.compile(r"S_\{max\}|φ_\w+|φ|sin|cos|π|x|\d+|[-+*/()]|\^")
 
@@ -34,7 +34,7 @@ def value(text, **letters):
 @pytest.mark.parametrize("name", FORMS)
 def test_formulas_are_those_of_the_law(name, dwell):
     law = PositionFunction.of(1.2, dwell, 1.7, 0.03, LAWS[name])
-    for phase, lines in zip((law.rise, law.fall), _phases(law), strict=True):
+    for phase, lines in zip((law.rise, law.fall), phases_of(law), strict=True):
         for x in (0.2, 0.8):
             head = lines[0].partition("x = ")[2]
             assert value(head, dwell=dwell, phi=float(phase.phi(x))) == pytest.approx(x)
@@ -50,7 +50,7 @@ def test_all_but_diagrams_are_formulas():
 
 
 def test_a_law_that_is_a_diagram_tells_its_greatest_value_only():
-    for lines in _phases(PositionFunction.of(1.2, 0.5, 1.7, 0.3, LAWS["trapezoid"], symbol="ψ")):
+    for lines in phases_of(PositionFunction.of(1.2, 0.5, 1.7, 0.3, LAWS["trapezoid"], symbol="ψ")):
         word, value = lines
         assert word in ("Удаление:", "Возвращение:")
         assert value.startswith("|ψ")
@@ -61,8 +61,8 @@ def test_a_law_that_is_a_diagram_tells_its_greatest_value_only():
 def test_every_form_says_all_of_it(name):
     """Wide or narrow, on one column or two: the same words in the same order, the narrowest the last."""
     law = PositionFunction.of(1.2, 0.5, 1.7, 0.03, LAWS[name])
-    whole = " ".join(line for lines in _phases(law) for line in lines)
-    forms = list(_forms(law))
+    whole = " ".join(line for lines in phases_of(law) for line in lines)
+    forms = list(formula_layouts(law))
     for form in forms:
         columns, height, *_ = form
         assert " ".join(line.strip() for lines in columns for line in lines).split() == whole.split()
@@ -75,7 +75,7 @@ def test_every_form_says_all_of_it(name):
 def test_no_exponent_stands_in_the_index_of_the_line_above(name):
     """The strokes of the letters decide, not their boxes."""
     law = PositionFunction.of(1.39626, 0.5, 1.39626, 0.02, LAWS[name])
-    for form in _forms(law):
+    for form in formula_layouts(law):
         for column in form.columns:
             canvas, at = Canvas(), 500.0
             canvas.lines(complex(0.0, at), column, form.pitch, form.height)

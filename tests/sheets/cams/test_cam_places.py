@@ -40,15 +40,15 @@ def test_ordinates_of_the_pressure_angle_stand_apart(name):
 
 def test_the_graph_of_a_spring_keeps_a_height_that_can_be_read():
     follower, boxes = places("transport/crusher@11-СДМ-314")
-    assert len(cam._spring_lines(follower.spring, True)) == cam.SPRING_LINES
+    assert len(cam.spring_lines(follower.spring, True)) == cam.SPRING_LINES
     assert cam.spring_height(boxes["cam.spring"].width, boxes["cam.spring"].height) >= 40.0
 
 
 def test_the_name_of_a_level_stands_where_the_curve_is_farther_off():
     x = np.linspace(0.0, 100.0, 101)
     curve = x + 1j * np.where(x > 60.0, -20.0, 0.0)  # dips below the level -10 beyond 60
-    assert cam._clear_of(curve, -10j, -1, 8.0) < 56.0
-    assert cam._clear_of(curve, 10j, 1, 8.0) > 90.0
+    assert cam.clear_of(curve, -10j, -1, 8.0) < 56.0
+    assert cam.clear_of(curve, 10j, 1, 8.0) > 90.0
 
 
 def test_the_zone_of_a_tappet_is_as_high_as_its_numbers_need():

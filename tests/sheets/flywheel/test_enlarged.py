@@ -32,7 +32,7 @@ def test_none_where_it_does_not_vary_at_all():
     light = {"link[1].mass": "1e-12 kg"}
     whole = files.project(files.HEAD, files.SLIDER, files.WORKING, files.FORCE, files.MASS, light, files.MOMENT, files.FLYWHEEL,
                           {"link": [{"name": "1", "centre": "O", "inertia": "2 kg m2"}]})
-    assert enlarged._larger(whole.flywheel)[0] == whole.flywheel.scales.inertia
+    assert enlarged.larger(whole.flywheel)[0] == whole.flywheel.scales.inertia
 
 
 @pytest.mark.parametrize("inertia", [0.3, 1.0])
@@ -42,14 +42,14 @@ def test_as_wide_as_a_main_result(inertia):
     x = 0.1 * np.cos(phi) + np.sqrt(0.4**2 - (0.1 * np.sin(phi)) ** 2)
     spread = np.ptp(5 * np.gradient(x, phi) ** 2)
     _, curve = drawn(machine(inertia))
-    mu = enlarged._larger(machine(inertia).flywheel)[0].mu
+    mu = enlarged.larger(machine(inertia).flywheel)[0].mu
     assert np.ptp(curve.real) == pytest.approx(spread / mu, rel=2e-3)
     assert MAIN <= np.ptp(curve.real) < 2 * MAIN
 
 
 def test_axis_begins_at_a_number_left_of_the_curve():
     project = machine(1.0)
-    first = enlarged._larger(project.flywheel)[2]
+    first = enlarged.larger(project.flywheel)[2]
     canvas, curve = drawn(project)
     assert 0.9 < first <= 1.0
     assert enlarged.LEFT <= curve.real.min() < enlarged.LEFT + 10.0

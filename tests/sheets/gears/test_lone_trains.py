@@ -104,7 +104,7 @@ def test_sizes_of_wheels_without_shift():
 
 def test_ratios_of_pairs_and_of_their_chain():
     own, _ = drawn("shafts")
-    assert list(train._pairs(own.train)) == [
+    assert list(train.meshing_pairs(own.train)) == [
         "i_{12} = n_{1}/n_{2} = 960/(−480) = −2;  −z_{2}/z_{1} = −40/20 = −2",
         "i_{34} = n_{3}/n_{4} = −480/342,9 = −1,4;  −z_{4}/z_{3} = −35/25 = −1,4", "i_{14} = i_{12}·i_{34} = 40·35/(20·25) = 2,8"]
 

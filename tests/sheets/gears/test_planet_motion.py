@@ -68,7 +68,7 @@ def test_planets_are_drawn_where_they_can_be_put_in(meshes, teeth, wanted, drawn
     ([ROW[0], mesh("3", "2", -1, "H2")], {"1": 1.0, "3": 2.0, "H": 0.0, "H2": 0.0}, 0),  # on other carriers
 ])  # fmt: skip
 def test_ratios_by_speeds_and_by_teeth_agree(meshes, speeds, count):
-    lines = list(train_views._ratios(train(meshes, TEETH, speeds)))
+    lines = list(train_views.ratio_steps(train(meshes, TEETH, speeds)))
     assert len(lines) == count
     assert len({line.rsplit(" = ", 1)[1] for line in lines}) <= 1
 
@@ -88,11 +88,11 @@ def test_planets_all_round_stay_in_their_place(satellites):
 def test_relative_speeds_are_as_the_teeth_demand(name, rows):
     """Who turns with the carrier sees an ordinary train: the speeds of two wheels in mesh are as their teeth, inverted."""
     project = Project(read(name))
-    found = {name: n - h for _, name, n, h in train_views._inverted(project)}
+    found = {name: n - h for _, name, n, h in train_views.inverted_speeds(project)}
     assert len(found) == rows
     own = project.train if project.variant.train is not None else project.reducer
     teeth = own.data.teeth
     for central, planet in [(m.central, m.planet) for m in own.meshes if m.carrier]:
         assert np.isclose(abs(found[central] * teeth[central]), abs(found[planet] * teeth[planet]), rtol=1e-9)
-    for line in train_views._ratios(own):
+    for line in train_views.ratio_steps(own):
         assert re.search(r"= −?[\d,]+$", line)

@@ -8,7 +8,7 @@ import pytest
 
 from tmm_sheets import catalogue
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.gears.train import _lines
+from tmm_sheets.sheets.gears.train import equation_lines
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant
 
@@ -35,7 +35,7 @@ def driven(tmp_path, driver):
 def check(project):
     """How many equations in numbers alone the sheet has; each is right to the places that are written."""
     equal = 0
-    for line in _lines(project.reducer):
+    for line in equation_lines(project.reducer):
         for statement in re.split(" > |: |; (?!\\d+\\))", line.removesuffix(UNIT)):
             known = [value for value in map(counted, statement.split(" = ")) if value is not None]
             equal += max(len(known) - 1, 0)
@@ -53,7 +53,7 @@ def test_schemes_of_the_manual(name):
 def test_a_row_alone(tmp_path, driver):
     project = driven(tmp_path, driver)
     assert check(project) >= 7
-    lines = list(_lines(project.reducer))
+    lines = list(equation_lines(project.reducer))
     entry = {"sun": "1", "ring": "3"}[driver]
     assert lines[1].startswith(f"u_{{{entry}H}} = ")
     assert f"n_{{{entry}}}/u" in lines[-3]

@@ -28,7 +28,7 @@ from tmm_sheets.sheets.sheet import composed
     (30j, [10j, 80j], 1 / 3),                # the longer one does not count
 ])  # fmt: skip
 def test_the_part_of_an_arm_that_shorter_ones_take(arm, others, part):
-    assert kinetics._covered(arm, others) == pytest.approx(part)
+    assert kinetics.covered_arm(arm, others) == pytest.approx(part)
 
 
 @pytest.mark.parametrize(("name", "text"), [
@@ -93,7 +93,7 @@ def test_pairs_with_friction_have_the_names_of_the_structure():
     """The shaper's slider has two sliding pairs at one point: D′ and D″."""
     project = project_files.project(project_files.from_file("lugansk/shaper"), {"friction": {"sliding": 0.1}})
     of = project.study.forces.friction
-    said = [friction._name(of, index) for index in of.pairs]
+    said = [friction.pair_name(of, index) for index in of.pairs]
     assert len(set(said)) == len(said) == 3
     sliding = [p.name for p in project.mechanism.pairs if p.motion == "translation"]
     assert [name.split(",")[0].split()[-1] for name in said] == sliding
@@ -145,14 +145,14 @@ def test_the_equation_of_a_guides_reaction_gives_its_couple_and_its_arm(name, li
 def test_an_arm_does_not_strike_its_own_letter():
     """Small letters beside slanting thin lines: they keep off these, under a leader if need be."""
     kept = []
-    original = labels._draw
+    original = labels.draw_label
 
     def keeping(canvas, label, box):
         kept.append((label, box))
         original(canvas, label, box)
 
     with pytest.MonkeyPatch.context() as patch, stored.unused():
-        patch.setattr(labels, "_draw", keeping)
+        patch.setattr(labels, "draw_label", keeping)
         sheet = composed(Project(read("sixbar/7:1")), 1)
     arms = [(label, box) for label, box in kept if label.text.startswith("h_")]
     assert len(arms) > 10

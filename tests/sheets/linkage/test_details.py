@@ -42,7 +42,7 @@ def row(count, step=2.0):
 ], ids=["none", "one", "few", "many", "coincident", "apart", "one far off", "two crowds"])  # fmt: skip
 def test_what_is_a_crowd(anchors, crowded):
     canvas = lever(*anchors)
-    found = details._crowds(canvas, ())
+    found = details.crowds(canvas, ())
     assert [len(crowd.labels) for crowd in found] == [crowded] * bool(crowded)
     assert bool(details.dense_sizes(None, canvas, {})) is bool(crowded)
     for crowd in found:
@@ -51,12 +51,12 @@ def test_what_is_a_crowd(anchors, crowded):
 
 @pytest.mark.parametrize(("view", "found"), [("kinetics.lever", 1), ("kinetics.group", 1), ("kinetics.crank", 1), ("other", 0)])
 def test_schemes_of_forces_have_their_crowds_alike(view, found):
-    assert len(details._crowds(lever(*row(9), view=view), ())) == found
+    assert len(details.crowds(lever(*row(9), view=view), ())) == found
 
 
 def test_a_polygon_has_corners_and_no_crowd():
     canvas = lever(*row(9))
-    assert not details._crowds(canvas, {label.part for label in canvas.labels})
+    assert not details.crowds(canvas, {label.part for label in canvas.labels})
 
 
 def test_nothing_on_the_sheet_nothing_dense():
@@ -70,19 +70,19 @@ def test_what_is_drawn_or_found_no_room_is_not_asked_again():
     below = [label for label in canvas.labels if label.anchor.imag > 260]
     canvas.parts.append(canvas.parts[part])
     canvas.labels[:] = [label._replace(part=len(canvas.parts) - 1) if label in below else label for label in canvas.labels]
-    first, second = details._crowds(canvas, ())
-    assert details._nth(None, canvas, {"nth": 1}) == first
-    assert details._nth(None, canvas, {"nth": 2}) == second
+    first, second = details.crowds(canvas, ())
+    assert details.nth_dense_place(None, canvas, {"nth": 1}) == first
+    assert details.nth_dense_place(None, canvas, {"nth": 2}) == second
     canvas.begin(PLACE, "", details.VIEW)
     details.dense(None, canvas, PLACE, {"nth": 1})
-    assert details._nth(None, canvas, {"nth": 2}).centre == second.centre
-    assert details._nth(None, canvas, {"nth": 3}) is None
+    assert details.nth_dense_place(None, canvas, {"nth": 2}).centre == second.centre
+    assert details.nth_dense_place(None, canvas, {"nth": 3}) is None
 
 
 def test_letters_go_into_the_detail_and_its_lines_are_the_levers_enlarged():
     canvas = lever(*row(9), 60.0)
     before, lines = list(canvas.labels), len(canvas.marks)
-    (found,) = details._crowds(canvas, ())
+    (found,) = details.crowds(canvas, ())
     details.dense(None, canvas, PLACE, {})
     assert sorted(label.text for label in canvas.labels) == sorted([*(label.text for label in before), "I"])
     half, middle = 40.0, PLACE.x0 + found.beside + 40.0 + 1j * (PLACE.y0 + 40.0)
@@ -110,7 +110,7 @@ def test_letters_go_into_the_detail_and_its_lines_are_the_levers_enlarged():
         "two crowds"])  # fmt: skip
 def test_which_corners_have_no_room_for_their_letters(points, joined, found):
     named = {chr(ord("a") + k): complex(z) for k, z in enumerate(points)}
-    crowds = details._together(named, tuple(details.Vector("F", *ends) for ends in joined))
+    crowds = details.points_together(named, tuple(details.Vector("F", *ends) for ends in joined))
     assert [names for names in map("".join, crowds) if not any(set(names) < set(other) for other in crowds)] == found
 
 
@@ -125,7 +125,7 @@ def test_what_a_detail_draws_is_not_about_zero(signs, drawn, left):
     vectors, points = tuple(details.Vector(sign, "1", "2") for sign in drawn), {"1": 0j, "2": 1 + 0j}
     frame, scale = PlacedFrame(0, "plan", "", 0j, (1.0, 1.0)), Scale("μ_F", 1.0, "N/mm")
     corner = details.Corner(0, 0.5 + 0j, 0.5, scale, None, frame, 0, vectors, points, ("1", "2"))
-    details._no_more_zero(canvas, corner)
+    details.no_more_zero(canvas, corner)
     assert [note.said for note in canvas.notes] == [*([] if left == [] else [f"≈ 0: {', '.join(left or [])}"]), "≈ 0: a"]
 
 
@@ -179,9 +179,9 @@ def test_what_is_dense_and_in_no_detail_is_told(points, lettered, told, enlarged
         at = complex(canvas.frames[frame](complex(points[name])))
         canvas.tracing("text", f"plan/{name}", "0", frame).label(at, name)
     vectors = [("V", plan["p"], step) for step in plan.values() if step is not plan["p"]]
-    monkeypatch.setattr(details, "_polygons", lambda project: {"plan": (plan, vectors)})
+    monkeypatch.setattr(details, "polygons_of", lambda project: {"plan": (plan, vectors)})
     if enlarged:
-        for it in details._corners(canvas, details._polygons(None), details._whole(canvas, ["plan"])):
+        for it in details.dense_corners(canvas, details.polygons_of(None), details.whole_polygons(canvas, ["plan"])):
             canvas.window(it.centre, it.reach + 1.5)
     found = [remark.values["count"] for remark in details.unread(None, 1, canvas)]
     assert found == ([] if enlarged else told)

@@ -17,8 +17,8 @@ def test_an_arrow_keeps_clear_of_what_stands_in_its_usual_place(link):
     scale = kinematics.Scale("μ_l", 0.002, "m/mm")
     s = stage(Canvas(), pos.plan, 3, PlanFrame(scale, 100 + 100j))
     shape = next(shape for shape in link_marks.shapes(pos) if shape.link == link)
-    usual = kinematics._free_arrows(shape, s, pos, np.array([-1e3 + 0j]))
-    busy = np.concatenate([kinematics._along_arrow(arrow) for arrow in usual])
-    found = kinematics._free_arrows(shape, s, pos, busy)
-    at = np.concatenate([kinematics._along_arrow(arrow) for arrow in found])
+    usual = kinematics.free_arrows(shape, s, pos, np.array([-1e3 + 0j]))
+    busy = np.concatenate([kinematics.along_arrow(arrow) for arrow in usual])
+    found = kinematics.free_arrows(shape, s, pos, busy)
+    at = np.concatenate([kinematics.along_arrow(arrow) for arrow in found])
     assert np.abs(at[:, None] - busy).min() >= kinematics.CLEAR

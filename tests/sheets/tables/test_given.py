@@ -31,7 +31,7 @@ def test_the_diesel_has_weights_angle_and_unevenness_as_table_2_1_prints_them():
         rows = {row[1]: row[5:] for row in csv.reader((x for x in file if not x.startswith("#")), delimiter=";")}
     project = Project(read("transport/diesel@01-Т-27"))
     assert title(project) == "Исходные данные"
-    shown = dict(given_position._quantities(project))
+    shown = dict(given_position.given_quantities(project))
     for letters, key, column in (("n_{1}, об/мин", "n1", 1), ("l_{BD}, м", "l_BD", 2), ("θ, °", "theta", 2), ("G_{2}, Н", "G2", 2),
                                  ("δ", "delta", 2), ("J_{S4}, кг·м²", "J_S4", 2)):
         assert shown[letters] == rows[key][column].replace(".", ","), letters

@@ -20,14 +20,14 @@ def tables(name):
     """A project, titles and columns of the tables of its sheet 1, and its scale factor of velocities."""
     composed(Project(read(name)), 1)  # kept: then its views are asked for their steps alone
     found, project = [], Project(read(name))
-    original = given_position._table_over_positions
+    original = given_position.table_over_positions
 
     def keeping(project, canvas, place, title, columns, decimals, **way):
         found.append((title, dict(columns)))
         original(project, canvas, place, title, columns, decimals, **way)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(given_position, "_table_over_positions", keeping)
+        patch.setattr(given_position, "table_over_positions", keeping)
         scales = composed(project, 1, steps=True).scales
     return project, found, scales["velocities"].mu
 
@@ -57,7 +57,7 @@ def drawn(columns, place, lying):
     canvas.begin(place, "", "kinematics.velocity_tables")
     values = np.linspace(-99.0, 99.0, len(project.cycle.labels))
     table = [(f"ω_{{{n}}}", values) for n in range(columns)]
-    given_position._table_over_positions(project, canvas, place, "velocities", table, 3, lying=lying)
+    given_position.table_over_positions(project, canvas, place, "velocities", table, 3, lying=lying)
     return project, canvas
 
 
@@ -89,7 +89,7 @@ def test_angular_velocities_have_the_sign_that_they_have_elsewhere(name):
 @pytest.mark.parametrize(("height", "positions", "columns", "folds"), [
     (90.0, 12, (2, 2), 2), (90.0, 12, (7, 7), 1), (130.0, 12, (2, 2), 1), (90.0, 24, (3, 4), 2), (90.0, 4, (1, 0), 1)])
 def test_rows_too_low_for_their_letters_go_on_beside_each_other(height, positions, columns, folds):
-    assert given_position._folds(Box(20.0, 0.0, 430.0, height), positions, *columns) == folds
+    assert given_position.table_folds(Box(20.0, 0.0, 430.0, height), positions, *columns) == folds
 
 
 @pytest.mark.parametrize("folds", [1, 2])
@@ -98,7 +98,7 @@ def test_a_folded_table_has_every_position_once(folds):
     place = Box(100.0, 100.0, 300.0, 220.0)
     canvas.begin(place, "", "kinematics.velocity_tables")
     values = np.arange(100.0, 100.0 + len(project.cycle.labels))
-    given_position._table_over_positions(project, canvas, place, "velocities", [("v", values)], 1, folds=folds)
+    given_position.table_over_positions(project, canvas, place, "velocities", [("v", values)], 1, folds=folds)
     written = [mark.text for mark in canvas.marks if isinstance(mark, Text)]
     assert sorted(text for text in written if text.startswith("1") and "," in text) == [
         f"{values[i]:.1f}".replace(".", ",") for i, _ in project.cycle.drawn]

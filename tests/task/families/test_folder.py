@@ -86,7 +86,7 @@ def test_commands_take_it(folder, capsys):
 def test_where_families_are_found(folder, tmp_path, monkeypatch):
     monkeypatch.setenv(families.CONFIG_FOLDER, str(tmp_path / "user"))
     monkeypatch.setenv(families.PATH, str(tmp_path / "share"))
-    families._installed.cache_clear()
+    families.installed_families.cache_clear()
     package = type("P", (), {"__path__": [str(shutil.copytree(folder, tmp_path / "package/gift"))]})
     entry = type("E", (), {"name": "gift", "load": lambda self: package})()
     monkeypatch.setattr("importlib.metadata.entry_points", lambda group: [entry] if group == families.GROUP else [])
@@ -97,7 +97,7 @@ def test_where_families_are_found(folder, tmp_path, monkeypatch):
     for name in ("own", "common", "gift"):
         assert catalogue.read(f"{name}/pump@27").project.name == f"{name}/pump@27"
         assert catalogue.is_shipped(f"{name}/pump@00")
-    families._installed.cache_clear()
+    families.installed_families.cache_clear()
 
 
 def test_a_family_that_is_not_finished_costs_no_other(folder, capsys):
@@ -220,4 +220,4 @@ def test_ciphers_of_many_digits_are_tried_in_all_their_figures(folder, monkeypat
     ("..3", "3", False), ("²", "2", False), ("9" * 5000, "9", False), (f"0..{'9' * 5000}", "9", False), ("a", "a", True),
     ("", "1", False)])
 def test_which_figures_a_column_is_for(head, figure, holds):
-    assert family_tables._holds(head, figure) == holds
+    assert family_tables.holds_figure(head, figure) == holds

@@ -85,7 +85,7 @@ def read(path: Path) -> CadInk:
     """
     document, notes = _open(path)
     unit = UNITS.get(int(document.header.get("$INSUNITS", 0)))
-    reader = _DxfReader(document, path)
+    reader = DxfReader(document, path)
     model = reader.space(tell("model space"), document.modelspace())
     spaces = [model, *(reader.paper(layout, model) for layout in document.layouts if not layout.is_modelspace)]
     notes += reader.notes()
@@ -207,7 +207,7 @@ class _EntityLook(NamedTuple):
     weight: int
 
 
-class _DxfReader:
+class DxfReader:
     """Takes entities apart and counts those it cannot read."""
 
     def __init__(self, document: Document, file: Path) -> None:

@@ -152,7 +152,7 @@ def _text(judged: list[JudgedValue], filled: measured_file.FilledTable) -> str:
     for j, row in zip(judged, rows, strict=True):
         lines += ["", j.entry.title, row] if j.entry.title != last else [row]
         last = j.entry.title
-    return "\n".join([*lines, "", *_summary(judged, filled)])
+    return "\n".join([*lines, "", *summary_of(judged, filled)])
 
 
 MARKS = {"green": " ", "amber": "?", "red": "!"}
@@ -205,13 +205,14 @@ def _story(title: str, judged: list[JudgedValue], filled: measured_file.FilledTa
     tables = tuple(StoryTable(of, tuple(map(tell, HEAD[1:])), tuple(_row(j)[1:] for j in some),
                                      tuple(j.verdict for j in some))
                    for of, some in ((of, list(some)) for of, some in groupby(judged, lambda j: j.entry.title)))
-    return Story(title, (_counted(judged, filled), *_advice(judged), *notes), tuple(_mistakes(judged, pictures)), tables)
+    return Story(title, (_counted(judged, filled), *advice(judged), *notes), tuple(all_mistakes(judged, pictures)), tables)
 
 
-def _summary(judged: list[JudgedValue], filled: measured_file.FilledTable) -> list[str]:
-    mistakes = [line for i, m in enumerate(_mistakes(judged), 1)
+def summary_of(judged: list[JudgedValue], filled: measured_file.FilledTable) -> list[str]:
+    """What is told of a table of measured numbers: how many were judged, the mistakes, what to do now."""
+    mistakes = [line for i, m in enumerate(all_mistakes(judged), 1)
                 for line in (f"{i}. {m.where}: {m.what}", *(f"   {line}" for line in m.details))]
-    told_last = [*_advice(judged), *mistakes] if _too_many(judged) else [*mistakes, *_advice(judged)]
+    told_last = [*advice(judged), *mistakes] if _too_many(judged) else [*mistakes, *advice(judged)]
     return [_counted(judged, filled), *told_last]
 
 
@@ -229,7 +230,7 @@ def _counted(judged: list[JudgedValue], filled: measured_file.FilledTable) -> st
     return said.format(n=len(judged), **_own(judged), follow=sum(j.follows is not None for j in judged), empty=filled.empty)
 
 
-def _grouped(judged: list[JudgedValue]) -> list[list[JudgedValue]]:
+def mistakes_as_told(judged: list[JudgedValue]) -> list[list[JudgedValue]]:
     """The mistakes as they are told: what nothing explains is one where it is off at several positions alike."""
     starts = sorted((j for j in judged if j.starts), key=lambda j: j.order)
     groups = grouped(starts, lambda j: id(j) if j.wrong or j.mistake is not None else (j.entry.title, j.entry.quantity))
@@ -246,8 +247,9 @@ def _everywhere(some: list[JudgedValue]) -> ToldMistake:
                        ("; ".join(said),))
 
 
-def _mistakes(judged: list[JudgedValue], pictures: PlanPictures | None = None) -> Iterator[ToldMistake]:
-    for j, *more in _grouped(judged)[:MOST]:
+def all_mistakes(judged: list[JudgedValue], pictures: PlanPictures | None = None) -> Iterator[ToldMistake]:
+    """The mistakes, each with what it explains, at most ``MOST``."""
+    for j, *more in mistakes_as_told(judged)[:MOST]:
         if more:
             yield _everywhere([j, *more])
             continue
@@ -266,12 +268,12 @@ def _mistakes(judged: list[JudgedValue], pictures: PlanPictures | None = None) -
 
 def _too_many(judged: list[JudgedValue]) -> bool:
     """Whether nearly everything is wrong: the single mistakes are guesses then."""
-    return len(_grouped(judged)) > MOST
+    return len(mistakes_as_told(judged)) > MOST
 
 
-def _advice(judged: list[JudgedValue]) -> list[str]:
+def advice(judged: list[JudgedValue]) -> list[str]:
     """What to do now."""
-    starts, own = len(_grouped(judged)), _own(judged)
+    starts, own = len(mistakes_as_told(judged)), _own(judged)
     if _too_many(judged):
         return [codes.ANOTHER_MECHANISM().said()]
     if starts:
@@ -324,7 +326,7 @@ def records(judged: list[JudgedValue]) -> tuple[list[FindingRecord], list[Findin
         return made[id(j)]
 
     start = []
-    for j, *more in _grouped(judged):
+    for j, *more in mistakes_as_told(judged):
         first = _record(j, None, len(more))
         start.append(first)
         made |= {id(j): first} | {id(other): _record(other, first) for other in more}

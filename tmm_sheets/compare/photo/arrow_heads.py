@@ -261,7 +261,7 @@ class _End:
 
 
 @dataclass(frozen=True)
-class _Paper:
+class Paper:
     """The rectified picture, who is drawn where, places of lettering (255 there), where the sheet does not show, and heads of
     arrows: the tip of each and the middle of its back.
     """
@@ -380,7 +380,7 @@ def with_heads(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any,
     -------
     The traces in the same order, with ``head``.
     """
-    paper = _Paper(ink, owners, words, hidden, [(complex(f[0]), complex(f[1:].mean())) for t in traces for f in t.element.fills])
+    paper = Paper(ink, owners, words, hidden, [(complex(f[0]), complex(f[1:].mean())) for t in traces for f in t.element.fills])
     found = {k: _head(t, paper) for k, t in enumerate(traces) if _wanted(t)}
     usual = [end for head, end in found.values() if head == "there" and end is not None and not end.lies_on]
     thin = construction_only(traces, ink, hidden)
@@ -433,7 +433,7 @@ def _half_width(e: Element) -> float:
     return float(np.abs(((e.fills[0] - e.fills[0][0]) / way).imag).max() * abs(way))
 
 
-def _head(t: InkTrace, paper: _Paper) -> tuple[Head, _End | None]:
+def _head(t: InkTrace, paper: Paper) -> tuple[Head, _End | None]:
     """What there is of a head at the tip, and at the other end when there is none; and what there is about the tip."""
     assert t.at is not None
     way = (t.at[1] - t.at[0]) / abs(t.at[1] - t.at[0])

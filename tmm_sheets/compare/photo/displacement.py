@@ -114,12 +114,12 @@ def better_match(t: InkTrace, s: Stations, left: Any, wiped: Any, ink: Any, owne
         fuller = _elsewhere(t.element, s, profile, unknown, offsets, level, least)
         if fuller is None or fuller.covered < max(NEARLY_ALL, t.covered + FULLER):
             continue
-        if fuller.darkness >= t.darkness / DARKER if least == KNOWN else _swung(fuller) and fuller.darkness >= PALE * t.darkness:
+        if fuller.darkness >= t.darkness / DARKER if least == KNOWN else swung(fuller) and fuller.darkness >= PALE * t.darkness:
             return fuller
     return None
 
 
-def _swung(t: InkTrace) -> bool:
+def swung(t: InkTrace) -> bool:
     """Whether a straight line that was found elsewhere has one end in its place: then little of it is enough to know it by."""
     if t.element.kind != "line" or t.at is None or t.covered < SURE:
         return False

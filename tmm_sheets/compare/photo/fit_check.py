@@ -133,27 +133,27 @@ def check(m: Map, straight: Map, sides: Seen, ink: Any, lines: ProfileLines, lev
     across = profiles(ink, lines, OFFSETS, at - lines.points, scale)
     o, strength = peaks(across, OFFSETS, 0.0, 0.8, 0.4)
     good = (strength > level) & (np.abs(o) < IN_PLACE)
-    some = (across.max(1) > level) & _in_picture(m, lines.points)
+    some = (across.max(1) > level) & in_picture(m, lines.points)
     seen = Seen(straight.to_picture(at + lines.normals * o), lines.points, lines.normals, good.astype(float))
     met = _on_sides(m, straight, sides, ink, level, scale)
     astray, judged = _astray(lines, good, some)
     shares = np.array([part.mean() for part in np.split(met, 4)])
     lost = np.array([z for z in astray if not _side_seen(z, sides.sheet, met)], complex)
     found = FitCheck(float(good.mean()), astray, lost, judged, _between_halves(m, sides, seen), _together(lines, o, good), shares,
-                     np.zeros(0, complex), 0.0, _adrift(lines, good, some, shares), _rim(m, sides))
+                     np.zeros(0, complex), 0.0, strips_adrift(lines, good, some, shares), rim_error(m, sides))
     if not found.moored:  # refused without that
         return found
-    shifted, by = _shifted(patches(m, straight, ink, lines, scale), m)
+    shifted, by = patches_shifted(patches(m, straight, ink, lines, scale), m)
     return replace(found, shifted=shifted, shift=by)
 
 
-def _in_picture(m: Map, p: Points) -> Any:
+def in_picture(m: Map, p: Points) -> Any:
     """Which points of the sheet are in the picture: beyond its edge the last pixels go on like lines."""
     q = m.to_picture(p) - m.middle
     return (np.abs(q.real) < m.middle.real) & (np.abs(q.imag) < m.middle.imag)
 
 
-def _shifted(seen: Seen, m: Map) -> tuple[Points, float]:
+def patches_shifted(seen: Seen, m: Map) -> tuple[Points, float]:
     """The patches that lie elsewhere beside others that do so alike, and by how much, mm, the median."""
     count = len(seen.weight) // 2
     z = seen.sheet[:count]
@@ -208,7 +208,7 @@ def _astray(lines: ProfileLines, good: Any, some: Any) -> tuple[Points, int]:
     return np.asarray(complex(FRAME.x0, FRAME.y0) + x + 1j * y), judged
 
 
-def _adrift(lines: ProfileLines, good: Any, some: Any, shares: Floats) -> Points:
+def strips_adrift(lines: ProfileLines, good: Any, some: Any, shares: Floats) -> Points:
     """Middles of the strips along unseen sides in which what shows is elsewhere.
 
     Nothing holds a map there: it may be right in the rest of a cell, and all the more wrong the nearer to the side. Lines along the
@@ -231,7 +231,7 @@ def _adrift(lines: ProfileLines, good: Any, some: Any, shares: Floats) -> Points
     return np.array(out, complex)
 
 
-def _rim(m: Map, sides: Seen) -> float:
+def rim_error(m: Map, sides: Seen) -> float:
     """How far the frame is off in a part of a side, mm: the largest median of neighbouring points of which most were seen."""
     off = np.real(np.conj(sides.normals) * (m.to_sheet(sides.picture) - sides.sheet)).reshape(-1, RUN)
     seen = (sides.weight > 0).reshape(-1, RUN)

@@ -337,13 +337,13 @@ def _ranked(ink: Any, lines: ProfileLines, level: float, quads: Points, wide: An
         some = quads[wide == (turn % 2 == 0)]
         for k in range(0, len(some), 500):
             part = np.roll(some[k : k + 500], turn, axis=1)
-            shares = _shares(near, part, p, n)
+            shares = ink_shares(near, part, p, n)
             best += [(float(shares[i]), part[i], turn) for i in np.argsort(-shares)[:KEPT]]
     best.sort(key=lambda found: -found[0])
     return [FrameGuess(corners, np.zeros((4, STATIONS)), reach, (0,)) for _, corners, _ in best[:KEPT]]
 
 
-def _shares(near: Any, quads: Points, p: Points, n: Points) -> Floats:
+def ink_shares(near: Any, quads: Points, p: Points, n: Points) -> Floats:
     """Share of points with ink in each of some quadrilaterals, less that beside them: 0 where everything is full of lines."""
     h = np.array([homography(CORNERS, quad) for quad in quads])
 

@@ -290,7 +290,7 @@ WANTED = marked(
 )
 
 
-def _side_points() -> tuple[Points, Points, npt.NDArray[np.int64]]:
+def side_points() -> tuple[Points, Points, npt.NDArray[np.int64]]:
     """Stations on the four sides of the frame, their normals (y for bottom and top, x for the others), the number of the side."""
     p, n, side = [], [], []
     for k, (a, b) in enumerate(chords(CORNERS)):
@@ -380,7 +380,7 @@ def _seek(grey: Grey, m: Map, width: float, least: int = 2) -> tuple[Seen, Float
 
     At least so many sides must have a line: three where nothing but they is to tell the map.
     """
-    p, n, side = _side_points()
+    p, n, side = side_points()
     offsets = _offsets(width)
     at = m.to_picture(p[:, None] + n[:, None] * _offsets(width, BESIDE))
     inside = (at.real >= 0) & (at.imag >= 0) & (at.real <= grey.shape[1] - 1) & (at.imag <= grey.shape[0] - 1)

@@ -88,7 +88,7 @@ def built_otherwise(project: Project, known: KnownSheet, findings: Sequence[Phot
 
     built = built_plan.built_otherwise(project, known, findings, {}, figure)
     of = {view: [f for f in findings if f.element.view == view] for view in built}
-    return {view: b for view, b in built.items() if not _contradicted(b, of[view]) and _borne_out(b, of[view])}
+    return {view: b for view, b in built.items() if not contradicted(b, of[view]) and borne_out(b, of[view])}
 
 
 class _PicturedPlan(Figure):
@@ -116,7 +116,7 @@ class _PicturedPlan(Figure):
         return np.array([self._inked(*line) for line in ends], dtype=np.float64)
 
 
-def _borne_out(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequence[PhotoFinding]) -> bool:
+def borne_out(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequence[PhotoFinding]) -> bool:
     """Whether a point that is off is what was measured: all lines agree with it, at two points that it moves.
 
     What nothing follows from, and what the lines tell otherwise, they tell better themselves.
@@ -134,14 +134,14 @@ def _borne_out(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequence[
     return len(led) > 1
 
 
-def _contradicted(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequence[PhotoFinding]) -> bool:
+def contradicted(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequence[PhotoFinding]) -> bool:
     """Whether lines of a plan are seen where they should be that would not be there by the mistake."""
     vectors = [f for f in findings if f.element.role == "vector" and f.element.kind == "line"]
-    stay = sum(_stays(f, between(f.element, built[1])) for f in vectors)
+    stay = sum(stays(f, between(f.element, built[1])) for f in vectors)
     return stay > 0 and CONTRADICTED * stay >= sum(f.verdict == "red" for f in vectors)
 
 
-def _stays(f: PhotoFinding, now: Points) -> bool:
+def stays(f: PhotoFinding, now: Points) -> bool:
     """Whether an element that would lie elsewhere, ``now``, is in its place: it itself, an end that shows, or its head."""
     return f.verdict == "green" and f.trace.status == "measured" and _told(f, now)
 
@@ -170,10 +170,10 @@ def as_built(findings: Sequence[PhotoFinding], built: Built, found: Rectified, p
     if found.uneven is not None:
         traces = mask_washed_out(traces, found.uneven)
     of = {t.element.number: judge(t, pencil, found.uncertainty, found.soft, found.eats) for t in traces}
-    return [_judged(of.get(f.element.number), f, found, pencil) for f in findings], extra
+    return [judged_where_built(of.get(f.element.number), f, found, pencil) for f in findings], extra
 
 
-def _judged(f: PhotoFinding | None, first: PhotoFinding, found: Rectified, pencil: float) -> PhotoFinding:
+def judged_where_built(f: PhotoFinding | None, first: PhotoFinding, found: Rectified, pencil: float) -> PhotoFinding:
     """A finding on an element that may have been built elsewhere, judged by the place that it should have.
 
     ``first`` is what was found there: what was measured in its place is not elsewhere, and what was right by what could be seen of
@@ -188,7 +188,7 @@ def _judged(f: PhotoFinding | None, first: PhotoFinding, found: Rectified, penci
     off = float(np.abs(now.points - was.points).max()) if len(now.points) == len(was.points) else 0.0
     if off <= f.tolerance or was.kind == "text" or f.trace.status not in ("measured", "shared", "missing", "beside") or f.unknown:
         return f
-    if _stays(first, now.points):
+    if stays(first, now.points):
         return first
     beyond = f.trace.status == "missing" and not all(map(PAPER.contains, now.points.tolist()))
     led = led_elsewhere(f, off, f.tolerance, codes.OFF_THE_PAPER() if beyond else f.remark)

@@ -113,11 +113,11 @@ def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: Profi
     if np.median(ground) < PAPER_GREY:
         single = ~there & (ground[row, column] >= GLARE)
         out[row[single], column[single]] = True
-    out |= _under_covers(ink, lines.points[there[: len(lines.points)]], level, shape)
+    out |= under_covers(ink, lines.points[there[: len(lines.points)]], level, shape)
     if not out.any():
         return out
     out = widened(out)
-    for flap in _flaps(out & ~outside):
+    for flap in flaps(out & ~outside):
         there_ = there[flap[row, column]]
         if there_.sum() <= SEEN * len(there_):
             out |= widened(flap, EDGE)
@@ -144,7 +144,7 @@ def at(p: Any, hidden: Mask) -> Any:
     return hidden[i, np.clip(np.real(p).astype(int), 0, columns - 1)]
 
 
-def _under_covers(ink: Any, seen: Points, level: float, shape: tuple[int, int]) -> Mask:
+def under_covers(ink: Any, seen: Points, level: float, shape: tuple[int, int]) -> Mask:
     """Where the frame is not seen, from the edge of the paper as far as the first line that is: what covers it may be paper too.
 
     ``seen`` are points of the lines inside that are in their places.
@@ -185,7 +185,7 @@ def _long(some: Any) -> Any:
     return out
 
 
-def _flaps(hidden: Mask) -> Iterator[Mask]:
+def flaps(hidden: Mask) -> Iterator[Mask]:
     """Where the backs of dog-ears may lie: a corner that is gone along a straight crease lies mirrored in it on the sheet."""
     for upside, mirrored in ((u, m) for u in (1, -1) for m in (1, -1)):
         corner = hidden[::upside, ::mirrored]

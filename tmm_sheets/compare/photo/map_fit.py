@@ -89,12 +89,12 @@ def fit_map(m: Map, sides: Seen, other: Seen | None = None, degree: int = 0, loo
     )):  # fmt: skip
         t = (along[mine] - FRAME.x0) / FRAME.width if k % 2 == 0 else (along[mine] - FRAME.y0) / FRAME.height
         if use[mine].sum() > LEAST_SIDE * mine.sum():
-            polynomials[k], sigma = _fit_side(t, r[mine], use[mine], m.sides.shape[1] - 1)
+            polynomials[k], sigma = fit_side(t, r[mine], use[mine], m.sides.shape[1] - 1)
             scatter.append(sigma)
     return replace(m, sides=polynomials), float(max(scatter, default=np.inf))
 
 
-def _fit_side(t: Floats, r: Floats, use: Any, degree: int) -> tuple[Floats, float]:
+def fit_side(t: Floats, r: Floats, use: Any, degree: int) -> tuple[Floats, float]:
     """Chebyshev coefficients of the residuals ``r`` along a side (t from 0 to 1), and their robust scatter, mm."""
     base = np.polynomial.chebyshev.chebvander(2 * t - 1, degree)
     w, rank = use.astype(float), np.arange(degree + 1) / degree

@@ -39,7 +39,7 @@ class Flag(NamedTuple):
     lines: tuple[Points, ...] = ()
 
 
-def _legend(fitted: bool = True) -> list[tuple[tuple[int, int, int], list[Points]]]:
+def legend_of(fitted: bool = True) -> list[tuple[tuple[int, int, int], list[Points]]]:
     """What everything means: colour and strokes; nothing is said of a drawing that was not ``fitted``."""
     entries = [(INK, "line", tell("drawn")), (EXACT, "line", tell("exact"))]
     entries += [(BAD["red"], "red", tell("wrong")), (BAD["amber"], "amber", tell("worth a look"))] if fitted else [
@@ -53,12 +53,12 @@ def png(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag], 
     size = (round(PAPER.width * PNG_SCALE), round(PAPER.height * PNG_SCALE))
     grey = cv2.resize(_clean(ink, level), size, interpolation=cv2.INTER_AREA)
     picture: Any = cv2.LUT(cv2.merge([grey, grey, grey]), _palette()[None, :, ::-1].copy())
-    for colour, strokes in _legend(fitted):
+    for colour, strokes in legend_of(fitted):
         for points in strokes:
             cv2.polylines(picture, [fixed(points, PNG_SCALE)], False, colour[::-1], 2, cv2.LINE_AA, 4)
     for points in exact:
         cv2.polylines(picture, [fixed(points, PNG_SCALE)], False, EXACT[::-1], 1, cv2.LINE_AA, 4)
-    for f, number in zip(flags, _numbers(flags), strict=True):
+    for f, number in zip(flags, number_places(flags), strict=True):
         colour = BAD[f.verdict][::-1]
         for line in f.lines:
             cv2.polylines(picture, [fixed(line, PNG_SCALE)], False, colour, 2, cv2.LINE_AA, 4)
@@ -85,7 +85,7 @@ def piece(ink: Any, level: float, box: Box, scale: float) -> bytes:
     return bytes(data.tobytes())
 
 
-def _numbers(flags: Sequence[Flag]) -> list[Numbered]:
+def number_places(flags: Sequence[Flag]) -> list[Numbered]:
     """Where the numbers of flags stand, none upon another."""
     return numbered([(f.at, CIRCLE, str(f.number)) for f in flags], DIGITS, PAPER)
 
@@ -109,9 +109,9 @@ def pdf(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag], 
     out = [f"{PAPER.width * mm:.4f} 0 0 {PAPER.height * mm:.4f} 0 0 cm /Ink Do Q q {mm:.6f} 0 0 {mm:.6f} 0 0 cm", "1 J 1 j 0.12 w",
            _colour(EXACT)]  # fmt: skip
     out += [_path(points) for points in exact]
-    for colour, strokes in _legend():
+    for colour, strokes in legend_of():
         out += [_colour(colour), "0.35 w", *map(_path, strokes)]
-    for f, number in zip(flags, _numbers(flags), strict=True):
+    for f, number in zip(flags, number_places(flags), strict=True):
         out += [_colour(BAD[f.verdict]), "0.35 w"]
         out += [_path(line) for line in f.lines]
         out.append(_path(around(f.verdict, f.at, CIRCLE)))

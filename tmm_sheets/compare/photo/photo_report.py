@@ -59,7 +59,7 @@ NUMBERS_READ = marked(
 
 
 @dataclass(frozen=True)
-class _Judged:
+class Judged:
     """The findings on a sheet, and the places worth showing: what is off, red before amber and the worst first."""
 
     findings: Sequence[PhotoFinding]
@@ -67,6 +67,7 @@ class _Judged:
 
     @cached_property
     def places(self) -> list[FindingCluster]:
+        """Places of the picture with findings, the worst first."""
         return places(self.findings, self.extra)
 
     @cached_property
@@ -98,6 +99,7 @@ class _Judged:
 
     @cached_property
     def hidden_ends(self) -> int:
+        """How many ends of elements could not be seen."""
         return sum(f.hidden_ends for f in self.findings)
 
 
@@ -110,7 +112,7 @@ def image_report(
     ``pencil`` is the error of a point drawn by hand, mm; ``readings`` what was read of its numbers, None where nothing was;
     ``built`` are plans that were built on a mistake.
     """
-    judged = _Judged([_read_otherwise(f, readings) for f in findings] if readings else findings, extra)
+    judged = Judged([_read_otherwise(f, readings) for f in findings] if readings else findings, extra)
     soft = SOFT_TOLERANCE if found.soft else 0.0
     count = judged.count
     said = tell_n(
@@ -123,12 +125,12 @@ def image_report(
     tolerance, head, rows = _tolerance(pencil, found.uncertainty, soft), tuple(map(tell, HEAD)), _rows(judged)
     unread = [_read(readings), tell(NUMBERS_READ)] if readings else [tell(NOT_READ)]
     told_mistakes = mistakes(found, judged.findings, judged.places, built)
-    records, start = _records(judged, built)
+    records, start = recorded(judged, built)
     verdicts = [str(p.verdict) for p in judged.places]
     tables = (StoryTable(tell("Everything that is off"), head, tuple(rows), tuple(verdicts)),) if rows else ()
     report = reported(
-        "photo", name, n, path, (summary, *_extra(judged), tolerance), records, start, told_mistakes, tables,
-        (*_hidden(judged), *unread), notes, _unclaimed(judged), image=path.name, pixels_per_mm=round(found.scale, 2),
+        "photo", name, n, path, (summary, *extra_ink(judged), tolerance), records, start, told_mistakes, tables,
+        (*hidden_elements(judged), *unread), notes, unclaimed(judged), image=path.name, pixels_per_mm=round(found.scale, 2),
         matched=round(found.match, 3), tolerance=round(pencil + found.uncertainty + soft, 3), count=_count(judged),
         notes=list(notes), bulging=boxes(found.bulging), **({"numbers_read": readings.tree} if readings else {}))
     assert report.story is not None
@@ -157,7 +159,7 @@ def _read(readings: Readings) -> str:
     return said.format(n=readings.asked, otherwise=len(readings.otherwise), unread=readings.unread)
 
 
-def _hidden(judged: _Judged) -> list[str]:
+def hidden_elements(judged: Judged) -> list[str]:
     """What could not be measured."""
     hidden, dense, ends = len(judged.hidden), len(judged.dense), judged.hidden_ends
     said = (
@@ -178,7 +180,7 @@ def _views(findings: Sequence[PhotoFinding]) -> str:
     return f" ({', '.join(named)})" if counts else ""
 
 
-def _extra(judged: _Judged) -> list[str]:
+def extra_ink(judged: Judged) -> list[str]:
     """What is too much, if anything."""
     n = len(judged.ink_alone)
     said = tell_n("{n} place with ink that is not on the sheet", "{n} places with ink that is not on the sheet", n)
@@ -194,7 +196,7 @@ def _tolerance(pencil: float, uncertainty: float, soft: float) -> str:
     return said.format(**{part: told(f"{size:.2f}") for part, size in sizes.items()})
 
 
-def _rows(judged: _Judged) -> list[tuple[str, ...]]:
+def _rows(judged: Judged) -> list[tuple[str, ...]]:
     """The rows of the table of what is off, one for each place."""
     out: list[tuple[str, ...]] = []
     for p in judged.places:
@@ -207,7 +209,7 @@ def _rows(judged: _Judged) -> list[tuple[str, ...]]:
     return out
 
 
-def _records(judged: _Judged, built: Mapping[ElementView, BuiltPlan]) -> tuple[list[FindingRecord], list[FindingRecord]]:
+def recorded(judged: Judged, built: Mapping[ElementView, BuiltPlan]) -> tuple[list[FindingRecord], list[FindingRecord]]:
     """What is listed: plans that were built on mistakes, the elements; and where it starts."""
     mistakes = of_built(built)
     told = ("measured", "shared", "beside", "covered", "missing", "dense", "part of lettering", "absent lettering", "hidden",
@@ -237,20 +239,20 @@ def _growth(t: InkTrace) -> float | None:
     return t.growth / half if half else None
 
 
-def _unclaimed(judged: _Judged) -> list[dict[str, Any]]:
+def unclaimed(judged: Judged) -> list[dict[str, Any]]:
     """Ink that belongs to no element."""
     return [{"kind": "ink", "length_mm": round(x.length, 1), "at_mm": point(x.middle), "width_mm": round(float(x.width), 1),
              "height_mm": round(float(x.height), 1), "place": p.number} for p in judged.places for x in (*p.own, *p.ink)]
 
 
-def _count(judged: _Judged) -> dict[str, int]:
+def _count(judged: Judged) -> dict[str, int]:
     """How many elements were judged, and why the others were not."""
     status = Counter(f.trace.status for f in judged.findings)
     return {**judged.count, "dense": len(judged.dense), "hidden": len(judged.hidden), "hidden_ends": judged.hidden_ends,
             "eaten": status["eaten"], "measured": status["measured"]}
 
 
-def _overlays(found: Rectified, judged: _Judged, title: str) -> dict[str, bytes]:
+def _overlays(found: Rectified, judged: Judged, title: str) -> dict[str, bytes]:
     """The overlays by the suffix of their files."""
     flags = [overlay.Flag(p.number, str(p.verdict), p.at, shown(p)) for p in judged.places]
     exact = [p for f in judged.findings if f.element.kind != "text" for p in dashed(f.element)]

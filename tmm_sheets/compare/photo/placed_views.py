@@ -149,12 +149,12 @@ def _searched(
         normals = lines.normals * now.turn / abs(now.turn)
         p = now(lines.points)
         o, use, hit = inked(ink, lines._replace(points=p, normals=normals), reach, level)
-        step = _step(p, normals, o, use, loose, free)
+        step = similarity_step(p, normals, o, use, loose, free)
         now = Placing(step.turn * now.turn, step.turn * now.shift + step.shift)
     return now, hit
 
 
-def _step(p: Points, normals: Points, o: Any, use: Any, loose: float, free: bool) -> Placing:
+def similarity_step(p: Points, normals: Points, o: Any, use: Any, loose: float, free: bool) -> Placing:
     """The small similarity that takes points onto lines ``o`` mm off along their normals."""
     middle = p.mean()
     half = max(float(np.abs(p - middle).max()), 1.0)

@@ -153,7 +153,7 @@ def rectify(
         When there is no frame, or the picture is too blurred or too small.
     """
     lines = as_lines([e for e in known if e.length < LONGEST and (by_lines or e.role == "frame")])
-    attempts = _Attempts(picture.grey, lines, by_lines)
+    attempts = Attempts(picture.grey, lines, by_lines)
     say(tell("looking for the frame"))
     refused: CannotBuild | None = None
     try:
@@ -194,7 +194,7 @@ def rectify(
                      best.frame.smear > SOFT, best.check, hidden | bulging, bulging)
 
 
-class _Attempt(NamedTuple):
+class Attempt(NamedTuple):
     """A frame found, what was fitted to it, and what is to be said of the fit."""
 
     found: FoundFrame
@@ -213,17 +213,18 @@ class _Attempt(NamedTuple):
         return self.check.match + 0.2 * float(self.check.sides.mean()) - len(self.check.astray) / max(self.check.judged, 1)
 
 
-class _Attempts:
+class Attempts:
     """Fits of a sheet to a picture, until one is sound."""
 
     def __init__(self, grey: Any, lines: ProfileLines, by_lines: bool) -> None:
         self.grey, self.lines, self.by_lines = grey, lines, by_lines
-        self.best: _Attempt | None = None
-        self.framed: _Attempt | None = None
+        self.best: Attempt | None = None
+        self.framed: Attempt | None = None
         """The likeliest of those whose frame was followed."""
 
     @property
     def sound(self) -> bool:
+        """Whether the best fit found can be relied on."""
         return self.best is not None and self.best.check.sound
 
     def begin(self, found: FoundFrame) -> None:
@@ -278,7 +279,7 @@ class _Attempts:
                 break
 
     @staticmethod
-    def _better(finer: _Attempt, best: _Attempt) -> bool:
+    def _better(finer: Attempt, best: Attempt) -> bool:
         """Whether a surface is to be believed: what so supple a map leaves astray may be its own doing, and it needs all sides."""
         if not best.check.moored and float(finer.check.sides.min()) < fit_check.SIDE:
             return False
@@ -297,11 +298,11 @@ class _Attempts:
             if self.sound:
                 break
 
-    def _keep(self, attempt: _Attempt) -> None:
+    def _keep(self, attempt: Attempt) -> None:
         if self.best is None or (attempt.check.sound, attempt.worth) > (self.best.check.sound, self.best.worth):
             self.best = attempt
 
-    def _fit(self, found: FoundFrame, frame: frame_search.FrameFit) -> _Attempt:
+    def _fit(self, found: FoundFrame, frame: frame_search.FrameFit) -> Attempt:
         straight = frame.map
         ink = straighten(self.grey, straight, COARSE)
         level, highest = line_level(ink), RELIEF if self.by_lines else 2
@@ -319,9 +320,9 @@ class _Attempts:
                 break
             # Part of a side was followed along something else: now it is known where the frame must be.
             sides = frame_search.sides_near(self.grey, m, ABOUT)
-        return _Attempt(found, frame._replace(sides=sides), m, check)
+        return Attempt(found, frame._replace(sides=sides), m, check)
 
-    def _surface(self, attempt: _Attempt, right: bool) -> _Attempt:
+    def _surface(self, attempt: Attempt, right: bool) -> Attempt:
         """The fit of paper with waves or creases, from an attempt that is right in most of the sheet, or has but a frame."""
         straight, sides = (attempt.map, attempt.frame.sides) if right else (attempt.frame.map, attempt.frame.sides)
         ink = straighten(self.grey, straight, COARSE)

@@ -118,7 +118,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         left[covers > 0] = 0
     left[wiped > 0] = 0
     found += _displaced(absent, ink, left, wiped, owners, pale)
-    found = _doubted(found, alone, ink, left, wiped, owners, pale)
+    found = doubted(found, alone, ink, left, wiped, owners, pale)
     found = _beside_strokes(found, small, ink, owners, pale)
     words = _places_of_lettering(elements, ink)
     found = with_edges(found, ink, owners, words)
@@ -173,13 +173,13 @@ def _in_their_places(
             absent.append(strip.element)
         else:
             found.append(t)
-        places = _alone(strip, dots, t is not None)
+        places = alone_on(strip, dots, t is not None)
         if places is not None and expected_ink(strip.element) == 1.0:
             alone[strip.element.number] = places
     return found, absent, alone
 
 
-def _alone(strip: Strip, dots: Points, found: bool = True) -> _Alone | None:
+def alone_on(strip: Strip, dots: Points, found: bool = True) -> _Alone | None:
     """The places of a line that others cover or run along for the most part, or that was not found, where none does; before a dot
     where it ends, a few.
     """
@@ -223,7 +223,7 @@ def _edge(t: InkTrace) -> bool:
     return t.status == "measured" and t.deviation < ELSEWHERE and t.element.kind != "circle"
 
 
-def _doubted(
+def doubted(
     found: Sequence[InkTrace], alone: Mapping[int, _Alone], ink: Any, left: Any, wiped: Any, owners: Owners, level: float,
 ) -> list[InkTrace]:
     """The traces; those of lines paler than others of their kind, with gaps, or not seen where they are ``alone``, are looked for
@@ -292,7 +292,7 @@ def _dots(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, words: 
     painted(taken, [(e, e.points) for e in dots], ABOUT_INK / 2)  # paint widens lines, and grows what is filled to all sides
     straight = [t for t in found if t.element.kind == "line"]
     rods, astray = [t.element.points for t in straight], [t.element.points for t in straight if _astray(t)]
-    return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()), astray, _bars(small, ink))
+    return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()), astray, bars(small, ink))
 
 
 def _astray(t: InkTrace) -> bool:
@@ -300,7 +300,7 @@ def _astray(t: InkTrace) -> bool:
     return t.status in ("missing", "covered", "beside") or (t.status == "measured" and t.deviation > ELSEWHERE)
 
 
-def _bars(small: Sequence[Element], ink: Any) -> Any:
+def bars(small: Sequence[Element], ink: Any) -> Any:
     """A picture of the bars over letters, which lie near them all along as their leaders do not, 255 there."""
     out = np.zeros_like(ink)
     for e in small:

@@ -125,7 +125,7 @@ def _excess(bench: Bench) -> None:
 
 
 @dataclass(frozen=True)
-class _Shaper:
+class ShaperEnergy:
     """The energy of the shaper over the angle turned, in mpmath, from the numbers of its project file."""
 
     project: Project
@@ -181,7 +181,7 @@ _FORCE = 2800.0
 
 
 @cache
-def _of(n: int) -> Project:
+def shaper_of(n: int) -> Project:
     """The shaper with that many positions, a multiple of five, three fifths of them on the working stroke."""
     shipped = catalogue.read("lugansk/shaper")
     assert shipped.cycle is not None
@@ -191,7 +191,7 @@ def _of(n: int) -> Project:
 
 def _inertia(method: type[Flywheel], name: str, n: int) -> float:
     """What a method comes to with that many positions: ``J_first``, or ``J_first_converged`` of its limit."""
-    p = _of(n)
+    p = shaper_of(n)
     assert p.variant.flywheel is not None
     return float(getattr(method(p.reduced, p.variant.flywheel), name))
 
@@ -199,7 +199,7 @@ def _inertia(method: type[Flywheel], name: str, n: int) -> float:
 def _flywheel(bench: Bench) -> None:
     methods: tuple[tuple[str, type[Flywheel]], ...] = (("Wittenbauer", Wittenbauer), ("Mertsalov", Mertsalov))
     for name, method in methods:
-        goal = _Shaper(_of(10)).first(name == "Mertsalov")
+        goal = ShaperEnergy(shaper_of(10)).first(name == "Mertsalov")
 
         def error(n: int, found: float, goal: Any = goal) -> float:
             return float(abs((found - goal) / goal))

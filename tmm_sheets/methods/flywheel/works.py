@@ -29,14 +29,14 @@ def _gather(*points: Any) -> Any:
 
 
 @primitive("within the first turn", "real")
-def _within(phi: Any, turn: Any) -> Any:
+def within_turn(phi: Any, turn: Any) -> Any:
     """Angles of later turns as those of the first; whole turns but the first end it."""
     later = phi > turn * (1 + 1e-12)
     return np.where(later, np.mod(phi - 1e-12, turn) + 1e-12, phi)
 
 
-FIRST_TURN = Rule("angle of the first turn", _within, ("angle", "angle"), "angle", marked("Angle within a turn {name} = {value}."),
-                  unit="rad", exact=True)
+FIRST_TURN = Rule("angle of the first turn", within_turn, ("angle", "angle"), "angle",
+                  marked("Angle within a turn {name} = {value}."), unit="rad", exact=True)
 MOMENT_AT = taken("reduced moment at the positions", "N*m", marked("Reduced moment of forces {name} = {value} N·m."))
 INERTIA_AT = taken("reduced moment of inertia at the positions", "kg*m2",
                    marked("Reduced moment of inertia {name} = {value} kg·m²."))

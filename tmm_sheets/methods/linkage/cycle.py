@@ -155,13 +155,13 @@ def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[Step, Step] | None]
 
 
 @primitive("angle turned to a point", "real")
-def _turned(centre: Any, pin: Any, start: Any, sense: Any) -> Any:
+def turned_about(centre: Any, pin: Any, start: Any, sense: Any) -> Any:
     """Angle from a direction to that from a centre to a point, in the sense of rotation, 0 to 360 degrees."""
     v = pin - centre
     return np.mod(sense * (np.arctan2(v.imag, v.real) - start), 2 * np.pi)
 
 
-TURNED = Rule("angle turned to a place of the crank pin", _turned, ("point", "point", "angle", "number"), "angle",
+TURNED = Rule("angle turned to a place of the crank pin", turned_about, ("point", "point", "angle", "number"), "angle",
               marked("Angle turned from position 0 to {1} {name} = {value}."), unit="rad", source="001, (6)-(9)")
 
 
@@ -184,7 +184,8 @@ def named_angles(m: Mechanism, start: float, sense: float) -> Plan | None:
     else:
         across = plan.add(f"⟂{c.pivot}{pivot}", rules.PERPENDICULAR, centre, far)
         rule, args = rules.ARC_LINE, (centre, c.length, far, across)
-    sides = sorted((1, -1), key=lambda side: float(_turned(centre.value, rule.compute(*map(value_of, args), side), start, sense)))
+    sides = sorted((1, -1), key=lambda side: float(
+        turned_about(centre.value, rule.compute(*map(value_of, args), side), start, sense)))
     for k, side in enumerate(sides, 1):
         pin = plan.add(f"{c.pin}_{k}k", rule, *args, side, symbol=f"{c.pin}_{{{k}k}}")
         plan.add(f"φ_{k}k", TURNED, centre, pin, start, sense, symbol=f"φ_{{{k}k}}")

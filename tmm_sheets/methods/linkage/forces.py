@@ -52,12 +52,13 @@ FORCE_ARM = Rule("arm of a force", ar.arm, ("point", "point", "force"), "ordinat
                  marked("Arm of the force {2} about {0}: {value}."), unit="m")
 
 
-def _tangential(total: Any, centre: Any, at: Any) -> Any:
+def tangential_part(total: Any, centre: Any, at: Any) -> Any:
+    """Force at a point, across its radius from the centre, that balances a sum of moments about it, N."""
     r = at - centre
     return -total / np.abs(r) * 1j * r / np.abs(r)
 
 
-TANGENTIAL = Rule("component from moments", _tangential, ("number", "point", "point"), "force",
+TANGENTIAL = Rule("component from moments", tangential_part, ("number", "point", "point"), "force",
                   marked("From the sum of moments about {1} find the component {name} = {value}, perpendicular to {1}{2}."),
                   unit="N")
 

@@ -58,13 +58,13 @@ WAY = Rule("fraction of a straight way",
 
 
 @primitive("fraction of a swing", "real")
-def _swung(u: Directions, sense: float, low: float, swing: float) -> Any:
+def swing_done(u: Directions, sense: float, low: float, swing: float) -> Any:
     """How far a direction has turned from one end of its swing, ``low`` (rad, in the sense of the working stroke), to the other."""
     spare = np.pi - swing / 2
     return np.clip((np.mod(sense * np.angle(u) - low + spare, TURN) - spare) / swing, 0.0, 1.0)
 
 
-SWING = Rule("fraction of a swing", _swung, ("direction", "number", "angle", "angle"), "number",
+SWING = Rule("fraction of a swing", swing_done, ("direction", "number", "angle", "angle"), "number",
              marked("Part of the angle of swing {name} = {value}."), exact=True)
 
 

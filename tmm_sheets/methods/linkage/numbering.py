@@ -103,7 +103,7 @@ WORLD = Rule("world angle of the crank", lambda start, sense, turned: start + se
              ("inclination", "number", "angle"), "angle",  # with its sign, as the sum is told
              marked("Angle of the crank {name} = {0} + {1}·{2} = {value}."), unit="rad", exact=True)
 @primitive("angle turned", "real")
-def _turned(start: float, end: float, sense: float) -> float:
+def angle_between(start: float, end: float, sense: float) -> float:
     """Angle from one direction to another in the sense of rotation, 0 to 360 degrees."""
     return float(np.mod(sense * (end - start), 2 * np.pi))
 
@@ -122,7 +122,7 @@ def _parts_of_turns(stroke: float, working: float, idle: float, turns: float) ->
     return np.concatenate([once + 2 * np.pi * n for n in range(int(turns))])
 
 
-TURNED = Rule("angle between dead positions", _turned, ("angle", "angle", "number"), "angle",
+TURNED = Rule("angle between dead positions", angle_between, ("angle", "angle", "number"), "angle",
               marked("Angle of the working stroke between the dead positions {name} = {value}."), unit="rad", exact=True)
 ANGLES: StepTable = {
     "φ_рх": ("K", lambda: tr("φ_w"),
@@ -261,7 +261,7 @@ def swing_cycle(m: Mechanism, start: float, end: float, positions: int, *, zero:
     CannotBuild
         when a further position has the label of another one or lies outside of the swing.
     """
-    swing = _turned(start, end, m.crank.sense)
+    swing = angle_between(start, end, m.crank.sense)
     if not swing > 1e-9:
         raise CannotBuild(tell("the crank swings from one angle to the same"),
                           tell("give another end, or leave end out for a whole turn"))

@@ -33,22 +33,22 @@ TIMES = Rule("part or multiple of a length", lambda ratio, x: ratio * x, ("numbe
 
 
 @primitive("round to a step", "real")
-def _nearest(x: Any, step: float) -> float:
+def nearest_multiple(x: Any, step: float) -> float:
     """The nearest whole multiple of a step, half of it upwards, as it is written with 12 significant digits."""
     # A decimal number of steps: 566 steps of 1 mm are 0.566 m and not a neighbour of it.
     return float(f"{floor(x / step + 0.5) * step:.12g}") if isfinite(x / step) else nan
 
 
-ROUND = Rule("round a length", _nearest, ("length", "length"), "length", marked("Round to {1}: {name} = {value}."))
+ROUND = Rule("round a length", nearest_multiple, ("length", "length"), "length", marked("Round to {1}: {name} = {value}."))
 
 
 @primitive("15 digits", "real")
-def _digits(x: float) -> float:
+def digits_of(x: float) -> float:
     """The number as it is written with 15 significant digits."""
     return float(f"{x:.15g}")
 
 
-AS_WRITTEN = Rule("length as it is used", lambda share, x: _digits(share * x), ("number", "length"), "length",
+AS_WRITTEN = Rule("length as it is used", lambda share, x: digits_of(share * x), ("number", "length"), "length",
                   "{name} = {0}·{1} = {value}.")
 
 

@@ -337,7 +337,7 @@ def pressure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]
         level = course.frame(1j * side * cam.alpha)
         course.line((*cam.zone.borders, cam.zone.apex)[0], level, level + d.length, "hidden", "axis")
         name = f"[{letter_of}] = {number(degrees(cam.alpha))}°" if side > 0 else f"−[{letter_of}]"
-        canvas.label(level + _clear_of(curve, level, side, letter(name, 3.5).width), name, 1j * side, 3.5, 0.8, leader=False)
+        canvas.label(level + clear_of(curve, level, side, letter(name, 3.5).width), name, 1j * side, 3.5, 0.8, leader=False)
     course.curve(dense.angles, curve)
     _exceeded(d, canvas, cam, letter_of)
     at, values = course.frame(inv.phi), inv.angles.value
@@ -352,7 +352,7 @@ def pressure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]
         centred(canvas, box, 3.0, tr("With force closure the angle is limited on the rise only"))
 
 
-def _clear_of(curve: Points, level: complex, side: int, wide: float) -> float:
+def clear_of(curve: Points, level: complex, side: int, wide: float) -> float:
     """Where along a level its name, so wide, stands clear of a curve and its ordinates, the farther to the right the better, mm."""
     inside = side * (level.imag - curve.imag)
     along, reach = curve.real - level.real, wide / 2 + 1.0
@@ -440,7 +440,7 @@ def spring(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     assert spring is not None
     steps = spring.course
     phi, force, inertia = (step.value for step in steps)
-    lines = _spring_lines(spring, law.symbol == "S")
+    lines = spring_lines(spring, law.symbol == "S")
     text = max(letter(line, 3.5).width for line in lines) + 16.0
     beside = _lines_beside(box.width, box.height)
     _, d = spring_diagram(cam, box)
@@ -470,7 +470,7 @@ def spring_diagram(cam: Cam, box: Box) -> tuple[float, OverAngle]:
     """What the forces of the spring and of inertia extend over, N, and where they stand over the cam angle."""
     assert cam.spring is not None
     _, force, inertia = (step.value for step in cam.spring.course)
-    lines = _spring_lines(cam.spring, cam.law.symbol == "S")
+    lines = spring_lines(cam.spring, cam.law.symbol == "S")
     text = max(letter(line, 3.5).width for line in lines) + 16.0
     area = box.inset(14, 8, text + 12, 32) if _lines_beside(box.width, box.height) else box.inset(14, 14 + 7.0 * len(lines), 20, 32)
     every = np.concatenate((force, inertia))
@@ -492,7 +492,7 @@ SPRING_LINES = 8
 """Number of the lines below: a sheet that is arranged asks for it hundreds of times."""
 
 
-def _spring_lines(spring: Spring, straight: bool) -> list[str]:
+def spring_lines(spring: Spring, straight: bool) -> list[str]:
     """The spring in formulas and numbers; of a rocker the forces are those at the centre of the roller."""
     plan = spring.plan
     way = {id(plan["s"]): Quantity("S_{max}" if straight else "AB·ψ_{max}", spring.way)}

@@ -24,16 +24,16 @@ WAYS = (5.0, 12.0, inf), (3.5, 8.0, inf), (3.5, 7.0, inf), (3.5, 6.0, inf), (3.5
 TITLE = marked("Law of motion in formulas")
 
 
-def _forms(law: PositionFunction) -> Iterator[Form]:
+def formula_layouts(law: PositionFunction) -> Iterator[Form]:
     """The formulas of both phases one under another or side by side, under a title as large as others or in smaller letters."""
-    phases = _phases(law)
+    phases = phases_of(law)
     for height, step, most in WAYS:
         rise, fall = ([line for text in lines for line in _broken(text, most, height)] for lines in phases)
         for columns, titled in product(([rise + fall], [rise, fall]), (5.0, 3.5)):
             yield Form(columns, height, step, least=letter(tr(TITLE), titled).width)
 
 
-equations = Formulas(TITLE, "cam-motion", lambda project: _forms(project.cam.law))
+equations = Formulas(TITLE, "cam-motion", lambda project: formula_layouts(project.cam.law))
 """Displacement and both derivatives on the rise and on the return."""
 
 
@@ -45,7 +45,8 @@ def _broken(text: str, most: float, height: float) -> list[str]:
     return [f"{word}:", rest] if colon else [text]
 
 
-def _phases(law: PositionFunction) -> tuple[list[str], list[str]]:
+def phases_of(law: PositionFunction) -> tuple[list[str], list[str]]:
+    """Formulas of the rise and of the return."""
     rise, fall = law.rise, law.fall
     before = "".join(f" − {p.letters}" for p in (rise, law.upper_dwell) if p.angle > 0)
     return (_formulas(law.symbol, rise, tr("Rise: x = {share}").format(share=f"φ/{rise.letters}")),
@@ -55,7 +56,7 @@ def _phases(law: PositionFunction) -> tuple[list[str], list[str]]:
 def _formulas(symbol: str, phase: Phase, head: str) -> list[str]:
     """Formulas of one phase under its heading, of the return those of the way back; its greatest second derivative."""
     most, angle, back = f"{symbol}_{{max}}", phase.letters, phase.travel < 0
-    minus, forms = "−" if back else "", _written(phase.law)
+    minus, forms = "−" if back else "", written(phase.law)
     lines = [head if forms else head.partition(" ")[0]]  # of a law without formulas its word alone
     for where, (s, ds, dds) in forms:
         lines += [f"{where}:"] if where else []
@@ -66,7 +67,7 @@ def _formulas(symbol: str, phase: Phase, head: str) -> list[str]:
                              Quantity(f"|{symbol}''|_{{max}}", phase.amplitude, "m" if symbol == "S" else ""))]
 
 
-def _written(law: Law) -> list[tuple[str, tuple[str, ...]]]:
+def written(law: Law) -> list[tuple[str, tuple[str, ...]]]:
     """Displacement and both derivatives for unit stroke and unit phase angle, by pieces of the phase, from the law itself.
 
     A law that is given as a diagram has no formula.

@@ -97,7 +97,7 @@ def change(project: Project, canvas: Canvas, box: Box, options: Options) -> None
                   fw.total_plan["points"].value.imag, x)
 
 
-def _larger(fw: Wittenbauer) -> tuple[Scale, Scale, float]:
+def larger(fw: Wittenbauer) -> tuple[Scale, Scale, float]:
     """Scale factors of the enlarged energy-mass diagram across and up, and the inertia at which its axis begins.
 
     Both its own scale factors where it is large enough.
@@ -117,7 +117,7 @@ def energy_mass_sizes(project: Project, canvas: Canvas, options: Options) -> tup
     fw = project.flywheel
     if fw.method != "wittenbauer":
         return ()
-    x, y, first = _larger(cast("Wittenbauer", fw))
+    x, y, first = larger(cast("Wittenbauer", fw))
     if (x, y) == (fw.scales.inertia, fw.scales.energy):
         return ()
     across = x.mm(float(fw.inertia(fw.samples).max()) - first)
@@ -128,7 +128,7 @@ def energy_mass_sizes(project: Project, canvas: Canvas, options: Options) -> tup
 def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """The curve with its points and the tangents where they touch it; what they cut off is measured on the diagram itself."""
     fw = flywheel.with_tangents(project)
-    plan, curve, (x, y, first) = fw.energy_mass_plan, fw.energy_mass_curve(fw.samples), _larger(fw)
+    plan, curve, (x, y, first) = fw.energy_mass_plan, fw.energy_mass_curve(fw.samples), larger(fw)
     widest = float(fw.inertia(fw.samples).max()) - first
     x = _across(x, widest, box)
     times, narrower = fw.scales.energy.mu / y.mu, fw.scales.inertia.mu / x.mu

@@ -189,7 +189,8 @@ def unsigned(ratio: float) -> str:
     return fixed(ratio, 3) if ratio > 0 else f"|{fixed(ratio, 3)}|"
 
 
-def _lines(r: Reducer) -> Iterator[str]:
+def equation_lines(r: Reducer) -> Iterator[str]:
+    """Equations by which the teeth of a reducer were chosen."""
     chosen = {step.name: step for step in r.sets[0]}
     one, *_, four = r.stage_wheels[0]
     mesh = next(m for m in r.meshes if m.central == one)
@@ -209,7 +210,7 @@ def _lines(r: Reducer) -> Iterator[str]:
     yield from willis_lines(r, mesh)
 
 
-of_stage = Lines(marked("The reducer in numbers"), lambda project, canvas: _lines(project.reducer))
+of_stage = Lines(marked("The reducer in numbers"), lambda project, canvas: equation_lines(project.reducer))
 """Ratio, conditions and speeds of a planetary stage, and the ratio of the whole reducer."""
 reducer_mobility = Lines(marked("Mobility and speeds of the links"),
                          lambda project, canvas: mobility_lines(project.reducer, ratios=False))
@@ -218,7 +219,7 @@ reducer_mobility = Lines(marked("Mobility and speeds of the links"),
 
 def _motions(project: Project, canvas: Canvas) -> list[list[str]]:
     """Speeds of the wheels of every carrier as they are, and as one sees them who turns with it (Willis)."""
-    found = list(_inverted(project))
+    found = list(inverted_speeds(project))
     several = len({carrier for carrier, *_ in found}) > 1
     return [[tr("Link"), tr("n, rpm"), f"n − n_H, {tr('rpm')}", f"ω, {tr('rad/s')}"], *(
         [f"{name} ({carrier})" if several else name, number(n), number(n - n_carrier), number(n * pi / 30, 5)]
@@ -229,7 +230,7 @@ inverted = Table(marked("Inverted motion (carrier held)"), _motions, (0.25,) * 4
 """Speeds of the wheels relative to their carriers; none without a carrier."""
 
 
-def _inverted(project: Project) -> Iterator[tuple[str, str, float, float]]:
+def inverted_speeds(project: Project) -> Iterator[tuple[str, str, float, float]]:
     """Carrier, wheel, its speed and that of the carrier, rpm."""
     train = project.train if project.variant.train is not None else project.reducer
     for carrier in dict.fromkeys(m.carrier for m in train.meshes if m.carrier):
@@ -237,7 +238,8 @@ def _inverted(project: Project) -> Iterator[tuple[str, str, float, float]]:
             yield carrier, name, float(train.kinematics[f"n{name}"].value), float(train.kinematics[f"n{carrier}"].value)
 
 
-def _ratios(train: Train) -> Iterator[str]:
+def ratio_steps(train: Train) -> Iterator[str]:
+    """Ratios of a train by its teeth: of planetary stages, then of the whole."""
     teeth, plan = train.data.teeth, train.kinematics
     for one, other in ((m, o) for m, o in combinations(train.meshes, 2) if m.carrier and train.stage(m) == train.stage(o)):
         (a, b), (c, d) = ((m.central, m.planet) for m in (one, other))
@@ -295,7 +297,7 @@ def _assembly(teeth: dict[str, int], q: int, one: Mesh, other: Mesh) -> dict[str
 
 checks = Lines(marked("Conditions of the planets"), lambda project, canvas: checks_of(project.train, *project.train.stages))
 """Common axis, assembly and neighbourhood of the planets of every carrier, in letters and in numbers."""
-ratios = Lines(marked("Ratios of the inverted motion"), lambda project, canvas: _ratios(project.train))
+ratios = Lines(marked("Ratios of the inverted motion"), lambda project, canvas: ratio_steps(project.train))
 """Ratios of central wheels with their carrier held, from the speeds and from the teeth."""
 
 
@@ -318,7 +320,8 @@ def _measured(of: Train, canvas: Canvas) -> Iterator[str]:
         yield f"{measured};  n_{{{one}}}/n_{{{two}}} = {number(n / speed)}"
 
 
-def _pairs(train: Train) -> Iterator[str]:
+def meshing_pairs(train: Train) -> Iterator[str]:
+    """Ratios of the pairs of wheels with fixed axes, in the order of the drive."""
     teeth, plan = train.data.teeth, train.kinematics
     whole, alone = list[tuple[str, str, int, int, int]](), [m for m in train.meshes if not m.carrier]
     for m in alone:
@@ -345,7 +348,7 @@ of_reducer = Lines(marked("Ratios by the plan of speeds"), lambda project, canva
 """Ratios of the driving link of a reducer to the others, from the segments of the plan and from the speeds."""
 of_train = Lines(marked("Ratios by the plan of speeds"), lambda project, canvas: _measured(project.train, canvas))
 """The same of a train."""
-pairs = Lines(marked("Ratios of the pairs"), lambda project, canvas: _pairs(project.train))
+pairs = Lines(marked("Ratios of the pairs"), lambda project, canvas: meshing_pairs(project.train))
 """Ratio of every pair whose axes stand still, by its speeds and by its teeth; of a train of such pairs that of the whole."""
 
 

@@ -108,15 +108,16 @@ class Dense:
 
 def dense_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the ``nth`` detail of a sheet can do with, mm; none where all is read."""
-    found = _nth(project, canvas, options)
+    found = nth_dense_place(project, canvas, options)
     return found.sizes() if found is not None else []
 
 
 def dense_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[complex, int, list[int]]:
     """What the detail shows, mm of the sheet, the part of its view, and those of the views it could be taken for a detail of."""
-    found = _nth(project, canvas, options)
+    found = nth_dense_place(project, canvas, options)
     assert found is not None
-    others = {frame.view for frame in _whole(canvas, _polygons(project))} - {found.part} if isinstance(found, Corner) else ()
+    others = {frame.view for frame in whole_polygons(canvas, polygons_of(project))} - {found.part} \
+        if isinstance(found, Corner) else ()
     return found.centre, found.part, list(others)
 
 
@@ -171,7 +172,7 @@ def _beside(node: BorderNode, figure: BorderNode, forms: Sequence[Form]) -> Bord
 
 def dense(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The ``nth`` dense place of a sheet enlarged, and its circle on the view."""
-    found, name = _nth(project, canvas, options), next_name(canvas)
+    found, name = nth_dense_place(project, canvas, options), next_name(canvas)
     assert found is not None
     window = Box(box.x0, box.y0, box.x1, box.y1 - HEAD)
     half = min(window.width - 2 * found.beside, window.height) / 2
@@ -190,7 +191,7 @@ def next_name(canvas: Canvas) -> str:
     return NAMES[sum(part.title.split(" ")[0] in NAMES for part in canvas.parts)]
 
 
-def _nth(project: Project, canvas: Canvas, options: dict[str, Any]) -> Dense | None:
+def nth_dense_place(project: Project, canvas: Canvas, options: dict[str, Any]) -> Dense | None:
     """The dense place that the ``nth`` detail is of: those before it are drawn, or found no room."""
     drawn = sum(part.draw == VIEW and bool(part.title) for part in canvas.parts)
     left = _every(project, canvas)
@@ -201,9 +202,9 @@ def _nth(project: Project, canvas: Canvas, options: dict[str, Any]) -> Dense | N
 def _every(project: Project, canvas: Canvas) -> list[Dense]:
     """All dense places of a sheet that are not shown enlarged yet."""
     circles = [mark.centre for n in canvas.windows if isinstance(mark := canvas.marks[n], Arc)]
-    plans = _polygons(project) if canvas.frames else {}
-    whole = _whole(canvas, plans)
-    return [place for place in (*_crowds(canvas, {frame.view for frame in whole}), *_corners(canvas, plans, whole))
+    plans = polygons_of(project) if canvas.frames else {}
+    whole = whole_polygons(canvas, plans)
+    return [place for place in (*crowds(canvas, {frame.view for frame in whole}), *dense_corners(canvas, plans, whole))
             if not any(abs(place.centre - at) < 1e-6 for at in circles)]
 
 
@@ -285,7 +286,7 @@ class Corner(Dense):
         # Long vectors that run side by side have their names together, which is that of no single step.
         names = [one[0]._replace(text=", ".join(label.text for label in one), by=None) for one in bundles if len(one) > 1]
         canvas.labels[:] = [*(label for label in canvas.labels if label not in own), *names]
-        _no_more_zero(canvas, self)
+        no_more_zero(canvas, self)
         return radius
 
     def _is_read(self, v: Vector, radius: float) -> bool:
@@ -335,7 +336,7 @@ def unread(project: Project, n: int, canvas: Canvas) -> list[Remark]:
     return [Remark(said, {"n": n, "what": what, "count": count, "size": size}) for what, (count, size) in found.items()]
 
 
-def _no_more_zero(canvas: Canvas, it: Corner) -> None:
+def no_more_zero(canvas: Canvas, it: Corner) -> None:
     """A vector that the detail draws is not told to be about zero beside the plan."""
     drawn = {v.sign for v in it.vectors if {v.tail, v.head} & set(it.names)}
     kept = [replace(note, signs=tuple(sign for sign in note.signs if sign not in drawn)) if note.part == it.part else note
@@ -343,7 +344,7 @@ def _no_more_zero(canvas: Canvas, it: Corner) -> None:
     canvas.notes[:] = [note for note, was in zip(kept, canvas.notes, strict=True) if note.signs or not was.signs]
 
 
-def _whole(canvas: Canvas, polygons: Container[str]) -> list[PlacedFrame]:
+def whole_polygons(canvas: Canvas, polygons: Container[str]) -> list[PlacedFrame]:
     """Polygons as they stand on the sheet, no details; of those of one plan at one position the largest."""
     found = dict[tuple[str, str], PlacedFrame]()
     for frame in canvas.frames:
@@ -353,7 +354,7 @@ def _whole(canvas: Canvas, polygons: Container[str]) -> list[PlacedFrame]:
     return list(found.values())
 
 
-def _corners(canvas: Canvas, polygons: Mapping[str, Polygon], whole: Sequence[PlacedFrame]) -> list[Corner]:
+def dense_corners(canvas: Canvas, polygons: Mapping[str, Polygon], whole: Sequence[PlacedFrame]) -> list[Corner]:
     """Corners that cannot be read, as they stand on the sheet: the worst of each plan, then others.
 
     Those of many velocity plans come last, where most are together first. They are looked for once for all details of a sheet.
@@ -370,7 +371,7 @@ def _corners(canvas: Canvas, polygons: Mapping[str, Polygon], whole: Sequence[Pl
         drawn = tuple(Vector(s, a.name, b.name) for s, a, b in vectors if abs(points[a.name] - points[b.name]) > ONE)
         there = dict.fromkeys(name for _, a, b in drawn for name in (a, b))
         of_plan = list[Corner]()
-        for names in _together({name: points[name] for name in there}, drawn):
+        for names in points_together({name: points[name] for name in there}, drawn):
             it = Corner.of(canvas, plan, frame, k, drawn, points, names)
             if it.crossed <= MOST and not any(set(names) & set(other.names) for other in of_plan):
                 of_plan.append(it)
@@ -380,7 +381,7 @@ def _corners(canvas: Canvas, polygons: Mapping[str, Polygon], whole: Sequence[Pl
 
 
 @once
-def _polygons(project: Project) -> dict[str, Polygon]:
+def polygons_of(project: Project) -> dict[str, Polygon]:
     """Plans by their names with their vectors."""
     study = project.study
     sides: dict[Plan, list[tuple[str, Step, Step]]] = {plan: [] for plan in (study.velocities.plan, study.accelerations.plan)}
@@ -390,7 +391,7 @@ def _polygons(project: Project) -> dict[str, Polygon]:
                                      if not any(seg.symbol == sign for sign, *_ in own)]) for plan, own in sides.items()}
 
 
-def _together(points: dict[str, complex], drawn: tuple[Vector, ...]) -> list[tuple[str, ...]]:
+def points_together(points: dict[str, complex], drawn: tuple[Vector, ...]) -> list[tuple[str, ...]]:
     """Points that cannot be told apart on the sheet, the most first.
 
     ``SEVERAL`` places and more within ``WIDE``, or points less than ``NEAR`` apart of which some are joined by a vector.
@@ -491,7 +492,7 @@ class Crowd(Dense):
         return turning
 
 
-def _crowds(canvas: Canvas, polygons: Collection[int]) -> list[Crowd]:
+def crowds(canvas: Canvas, polygons: Collection[int]) -> list[Crowd]:
     """Of each scheme the thickest crowd of labels it asks for, the thickest of all first; none where they find room.
 
     ``polygons`` are the parts of the sheet that are none.

@@ -221,7 +221,7 @@ def bearing_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> 
 
 def _shape(project: Project) -> Iterator[tuple[float, float]]:
     """Width and height of the hodograph, shares of the greater of both; of nothing, and of what has no end, none."""
-    course = _reaction(project)[2]
+    course = frame_reaction(project)[2]
     if np.isfinite(course).all() and not is_zero(float(np.abs(course).max()), project.study.forces.force_size(project.force_index)):
         real = extent([course, np.zeros(1)])
         yield real.width / max(real.width, real.height), real.height / max(real.width, real.height)
@@ -233,12 +233,13 @@ def too_flat(project: Project) -> Iterator[Remark]:
         for high in (SIZES[0] * min(shape) for shape in _shape(project) if SIZES[0] * min(shape) < LOWEST):
             yield Remark(marked("the hodograph of the reaction {force} is left out: {size} mm long it would be {high} mm wide, "
                                 "its numbers need {least} mm"),
-                         {"force": _reaction(project)[0], "size": f"{SIZES[0]:g}", "high": fixed(high, 1), "least": f"{LOWEST:g}"})
+                         {"force": frame_reaction(project)[0], "size": f"{SIZES[0]:g}", "high": fixed(high, 1),
+                          "least": f"{LOWEST:g}"})
 
 
 def bearing(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Ends of the vectors of the reaction on the crank, laid off from one pole, at the positions and between them."""
-    name, step, course = _reaction(project)
+    name, step, course = frame_reaction(project)
     at = np.broadcast_to(step.value, (len(project.cycle.labels),))
     real, inside = extent([course, np.zeros(1)]), box.inset(*AROUND)
     scale = Scale("μ_F", handy(max(real.width / inside.width, real.height / inside.height)), tr("N/mm"))
@@ -268,7 +269,7 @@ def bearing(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
         pen.label(pole + 0.6 * (tip - pole), f"F̅_{{{name[1:]}}}", 1j * (tip - pole), 3.5, 1.0)
 
 
-def _reaction(project: Project) -> tuple[str, Step, Points]:
+def frame_reaction(project: Project) -> tuple[str, Step, Points]:
     """Name of the reaction of the frame on the crank, its step at the positions, and its values over the cycle, N."""
     m = project.mechanism
     name = f"F{pair_index(m.crank.link, m.frame)}"

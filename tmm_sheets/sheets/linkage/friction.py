@@ -177,7 +177,7 @@ def pairs(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
             at = complex(project.study.positions.points[_hinge(of, index)].at(k))
             frame = PlanFrame(scale, complex(place.centre.real, top - (NAME + float(up)) * shrunk) - scale.mm(at))
             s = stage(canvas, project.study.positions.plan, k, frame)
-            canvas.text(complex(place.centre.real, place.y1 - 5.0), _name(of, index), 3.5, "centre")
+            canvas.text(complex(place.centre.real, place.y1 - 5.0), pair_name(of, index), 3.5, "centre")
             if index in of.moments:
                 _turning(project, s, index, step, force)
             else:
@@ -246,7 +246,7 @@ def _sliding(project: Project, s: PlayerStage, index: str, step: Step, force: co
         pen.label(tail + (half / 2 - 4.0) * u, f"V̅_{{{index}}}", -normal, 3.5, 1.5)
 
 
-def _name(of: Friction, index: str) -> str:
+def pair_name(of: Friction, index: str) -> str:
     """What a pair is called: as in the structure of the mechanism."""
     return tr("Pair {hinge}, reaction F_{{{index}}}").format(hinge=link_marks.indexed(of.pairs[index].name), index=index)
 

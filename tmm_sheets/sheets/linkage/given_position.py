@@ -133,7 +133,7 @@ UNITS = {"deg": "°", **{unit.replace(" ", "").replace("·", "").replace("²", "
 
 def links_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the table can do with, mm; none where a mechanism has no length of its own."""
-    return [size for size, _, _ in _forms(project)]
+    return [size for size, _, _ in table_forms(project)]
 
 
 def links(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -142,7 +142,7 @@ def links(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     Where the file does not say: where the fixed hinges are, lengths in the order in which the links are put together, then masses
     and moments of inertia.
     """
-    _, rows, row = next(form for form in _forms(project) if form[0][0] <= box.width + 1e-6 and form[0][1] <= box.height + 1e-6)
+    _, rows, row = next(form for form in table_forms(project) if form[0][0] <= box.width + 1e-6 and form[0][1] <= box.height + 1e-6)
     height = size_in(row)
     widths = needs(rows, height, ROOMY)
     spare = max(box.width - sum(widths), 0.0) / len(widths)
@@ -156,10 +156,10 @@ def _title(project: Project) -> str:
 
 
 @once
-def _forms(project: Project) -> list[tuple[tuple[float, float], Rows, float]]:
+def table_forms(project: Project) -> list[tuple[tuple[float, float], Rows, float]]:
     """Size on paper, rows and their height, of the forms of the table: the clearest first; none where there are no quantities."""
     found = list[tuple[tuple[float, float], Rows, float]]()
-    cells, title = [[symbol, value] for symbol, value in _quantities(project)], _title(project)
+    cells, title = [[symbol, value] for symbol, value in given_quantities(project)], _title(project)
     for row, beside in product(ROWS, BESIDE if cells else ()):
         count = -(-len(cells) // beside)
         columns = [cells[n * count:(n + 1) * count] for n in range(beside)]
@@ -170,7 +170,7 @@ def _forms(project: Project) -> list[tuple[tuple[float, float], Rows, float]]:
     return found
 
 
-def _quantities(project: Project) -> Iterator[tuple[str, str]]:
+def given_quantities(project: Project) -> Iterator[tuple[str, str]]:
     """Letters with unit, and number: as the task prints them, or of frame and links, where a synthesis may have found them.
 
     Of the latter nothing that is zero.
@@ -275,18 +275,18 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
     lengths = _measured_lengths(project, canvas, varying, [link.removeprefix("ω_") for link, _ in turning])
     width = box.width - 30.0
     lying = kinematic_frames.COLUMN * (max(len(lengths), len(speeds)) if stacked else len(lengths) + len(speeds)) > width
-    folds = 1 if lying or stacked else _folds(box, len(cycle.drawn), len(lengths), len(speeds))
+    folds = 1 if lying or stacked else table_folds(box, len(cycle.drawn), len(lengths), len(speeds))
     # Tables that lie down have the same columns.
     left, right = _table_places(box, len(speeds) if lying and lengths else len(lengths), len(speeds), stacked=stacked, folds=folds)
     if lengths:
         said = [f"{_segment(seg.tail, seg.head)} = {fixed(float(value[0] / mu[0]), 1)}" for seg, value in constant]
         title = "; ".join([tr("Lengths of the segments, mm"), *said])
-        _table_over_positions(project, canvas, left, title, lengths, 1, lying=lying, folds=folds)
+        table_over_positions(project, canvas, left, title, lengths, 1, lying=lying, folds=folds)
     if speeds:
         title = tr("Linear, m/s, and angular, rad/s, velocities") if turning else tr("Linear velocities, m/s")
         if turning:
             link_marks.tell_signs(project, canvas, box)
-        _table_over_positions(project, canvas, right, title, speeds, 3, lying=lying, folds=folds)
+        table_over_positions(project, canvas, right, title, speeds, 3, lying=lying, folds=folds)
 
 
 def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segment, Any]],
@@ -335,7 +335,7 @@ def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any
     return lengths
 
 
-def _folds(box: Box, positions: int, *columns: int) -> int:
+def table_folds(box: Box, positions: int, *columns: int) -> int:
     """Parts of the tables side by side: two, where so many rows are too low for the usual letters and the columns leave room."""
     wide = sum(2 * (10.0 + WIDE * count) + FOLD for count in columns) + 10.0
     return 2 if size_in(_row(box, positions)) < 3.5 and wide <= box.width else 1
@@ -362,7 +362,7 @@ NOTHING = 1e-4
 """Share of the greatest number of a table below which a column shows that it is nothing."""
 
 
-def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: str, columns: list[tuple[str, Any]],
+def table_over_positions(project: Project, canvas: Canvas, place: Box, title: str, columns: list[tuple[str, Any]],
                           decimals: int, *, lying: bool = False, folds: int = 1) -> None:
     """A column for each quantity, a row for each position that is drawn; the other way round ``lying``; a dash for no number.
 

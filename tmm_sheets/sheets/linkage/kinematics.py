@@ -135,7 +135,7 @@ def _position_numbers(project: Project, s: PlayerStage) -> None:
     pos, m = project.study.positions, project.mechanism
     sliding, paths = on_fixed_guides(m), list[Points]()
     pivots = {shape.link: s.at(pos.points[name]) for shape in link_marks.shapes(pos) for name in shape.bar if name in m.fixed}
-    for name in dict.fromkeys(_hinges(m, sliding)):
+    for name in dict.fromkeys(hinges(m, sliding)):
         z = np.ravel(s.frame(pos.points[name].value))
         _hinge_numbers(project, s, name, pivots.get(m.owner(name), z.mean() - 40j), _close(z, paths))
         paths.append(z)
@@ -149,7 +149,7 @@ def _position_numbers(project: Project, s: PlayerStage) -> None:
             own_path(project, s, name, n, whose=bool(np.nanmin(np.abs(z - np.concatenate(paths))) < CLOSE))
 
 
-def _hinges(m: Mechanism, sliding: Container[str]) -> Iterator[str]:
+def hinges(m: Mechanism, sliding: Container[str]) -> Iterator[str]:
     """Points of the hinges, and those that are there for their paths, which have their position numbers beside them."""
     yield m.crank.pin
     yield from (p.name for p in m.points if p.link != m.crank.link and any(p.name in g.outer for g in m.groups))
@@ -285,17 +285,17 @@ def _rotations(project: Project, s: PlayerStage) -> None:
     symbols.rotation_arrow(s.pen(crank, "symbol"), pivot, radius, away, c.omega, f"ω_{c.link}")
     shapes = link_marks.shapes(pos)
     bars = {shape.link: _along_bar(s, pos, shape) for shape in shapes}
-    taken = [_along_arrow((pivot, radius, away))]
+    taken = [along_arrow((pivot, radius, away))]
     for shape in shapes:
         link = shape.link
         w, eps = (of[link] for of in (study.velocities.omega, study.accelerations.epsilon))
         if not shape.bar or link == c.link or abs(w.at(k)) < 1e-9 * c.speed:
             continue
-        places = _free_arrows(shape, s, pos, np.concatenate([*taken, *(bar for name, bar in bars.items() if name != link)]))
+        places = free_arrows(shape, s, pos, np.concatenate([*taken, *(bar for name, bar in bars.items() if name != link)]))
         for step, sign, place, least in ((w, "ω", places[0], 0.0), (eps, "ε", places[1], 1e-9 * c.speed**2)):
             if abs(step.at(k)) > least:
                 symbols.rotation_arrow(s.pen(step, "symbol"), *place, float(step.at(k)), f"{sign}_{link}")
-                taken.append(_along_arrow(place))
+                taken.append(along_arrow(place))
 
 
 _Arrow = tuple[complex, float, complex]
@@ -310,7 +310,7 @@ def _along_bar(s: PlayerStage, pos: Positions, shape: link_marks.Shape) -> Point
     return np.concatenate([z, *(np.linspace(a, b, 2 + int(abs(b - a))) for a, b in pairwise(z))])
 
 
-def _along_arrow(arrow: _Arrow) -> Points:
+def along_arrow(arrow: _Arrow) -> Points:
     """Points along an arrow of rotation and under its sign."""
     about, radius, towards = arrow
     u = towards / abs(towards)
@@ -318,7 +318,7 @@ def _along_arrow(arrow: _Arrow) -> Points:
     return about + u * np.append(radius * np.exp(1j * np.linspace(-half, half, 12)), radius + np.array([2.0, 4.0]))
 
 
-def _free_arrows(shape: link_marks.Shape, s: PlayerStage, pos: Positions, busy: Points) -> tuple[_Arrow, _Arrow]:
+def free_arrows(shape: link_marks.Shape, s: PlayerStage, pos: Positions, busy: Points) -> tuple[_Arrow, _Arrow]:
     """Arrows of velocity and acceleration of a bar: the first places clear of ``busy`` points, or the clearest.
 
     Those of a rocker go round its pivot, those of a link that moves stand on each side of it, outwards first.
@@ -334,7 +334,7 @@ def _free_arrows(shape: link_marks.Shape, s: PlayerStage, pos: Positions, busy: 
         places = [((middle, 6.0, n), (middle, 6.0, -n)) for middle in middles]
 
     def room(arrows: tuple[_Arrow, _Arrow]) -> float:
-        return min(CLEAR, float(np.abs(np.concatenate([_along_arrow(arrow) for arrow in arrows])[:, None] - busy).min()))
+        return min(CLEAR, float(np.abs(np.concatenate([along_arrow(arrow) for arrow in arrows])[:, None] - busy).min()))
 
     return max(places, key=room)
 

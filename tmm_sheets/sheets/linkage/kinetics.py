@@ -94,7 +94,7 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     for line in (*jumps(project, g.links), *([] if plans else [tr("There are no forces in this position")])):
         canvas.note(left, line)
     for fp, place in zip(plans, places, strict=True):
-        _force_plan(project, canvas, place, fp, k)
+        force_plan_drawn(project, canvas, place, fp, k)
 
 
 def jumps(project: Project, links: Collection[str]) -> Iterator[str]:
@@ -200,20 +200,20 @@ def draw_arms(s: PlayerStage, about: complex, shown: Sequence[Shown], points: It
         pen.line(centre, foot, "thin")
         pen.dot(foot, 0.35, "thin")
         # On an arm that runs on over a shorter one its letter stands beyond the end of that.
-        first = centre + _covered(foot - centre, [f - centre for f in feet]) * (foot - centre)
+        first = centre + covered_arm(foot - centre, [f - centre for f in feet]) * (foot - centre)
         places = first + np.array((0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)) * (foot - first)
         at = complex(places[np.abs(places[:, None] - np.array(busy)).min(axis=1).clip(max=6.0).argmax()])
         pen.label(at, " = ".join(dict.fromkeys([arm_sign(force.symbol), *same])), 1j * (foot - centre), 2.5, 0.8, thin=KEPT_OFF)
         busy.append(at)
 
 
-def _covered(arm: complex, others: Iterable[complex]) -> float:
+def covered_arm(arm: complex, others: Iterable[complex]) -> float:
     """The part of an arm that shorter ones on its line take, as far as enough for a letter is left of it."""
     along = [(other / arm).real for other in others if abs((other / arm).imag) * abs(arm) < 0.6]
     return max((t for t in along if t > 0 and t * abs(arm) < abs(arm) - 3.0), default=0.0)
 
 
-def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: int) -> None:
+def force_plan_drawn(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: int) -> None:
     """Force polygon with numbered vertices, its equation and the values found."""
     points, _ = polygon(fp, k)
     canvas.of = fp.plan.name
@@ -381,7 +381,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     if not texts:
         canvas.text(complex(low.centre.real, low.y0), said, size_for([said], low.width - 4.0, 3.5), "centre")
     for fp, place in zip(plans, places, strict=True):
-        _force_plan(project, canvas, place, fp, k)
+        force_plan_drawn(project, canvas, place, fp, k)
 
 
 def _crank_couples(project: Project, s: PlayerStage, at: complex, away: complex) -> Iterator[str]:

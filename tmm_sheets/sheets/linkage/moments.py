@@ -55,13 +55,13 @@ class Term(NamedTuple):
 @once
 def of_group(project: Project, g: StructuralGroup) -> list[list[str]]:
     """Equations of a group, with those of its guides' reactions if there is room; none for a group without any."""
-    return _some(_of_group(project, g, guides) for guides in ((True, False) if g.guides else (False,)))
+    return _some(group_equations(project, g, guides) for guides in ((True, False) if g.guides else (False,)))
 
 
 @once
 def of_crank(project: Project) -> list[list[str]]:
     """The equation that gives the balancing moment."""
-    return _some([_of_crank(project)])
+    return _some([crank_equation(project)])
 
 
 @once
@@ -74,7 +74,7 @@ def of_lever(project: Project) -> list[list[str]]:
 
 def at_scale(project: Project, scale: Scale) -> list[list[str]]:
     """The same at the scale factor of the lever."""
-    return _some([_lever_lines(project, scale)])
+    return _some([lever_lines(project, scale)])
 
 
 def _some(texts: Iterable[Iterable[str]]) -> list[list[str]]:
@@ -114,7 +114,7 @@ def draw(canvas: Canvas, box: Box, texts: Iterable[list[str]], of: str) -> bool:
     return False
 
 
-def _of_group(project: Project, g: StructuralGroup, guides: bool = False) -> Iterator[str]:
+def group_equations(project: Project, g: StructuralGroup, guides: bool = False) -> Iterator[str]:
     """Equations of moments that give parts of a group's reactions: letters, then numbers."""
     k, forces, pos = project.force_index, project.study.forces, project.study.positions
     parts = [part for part in forces.from_moments if part.link in g.links]
@@ -138,7 +138,7 @@ def _of_group(project: Project, g: StructuralGroup, guides: bool = False) -> Ite
             yield from _solved(project, f"{{{about}}}", normal.args[0], (sign, arm_sign(sign), length), normal)
 
 
-def _of_crank(project: Project) -> Iterator[str]:
+def crank_equation(project: Project) -> Iterator[str]:
     """The equation of the balancing moment."""
     k, forces, crank = project.force_index, project.study.forces, project.mechanism.crank
     if project.driver is None and forces.balancing is not None:
@@ -198,7 +198,7 @@ def _solved(project: Project, centre: str, total: Step, own: tuple[str, str, flo
     yield _worked_out(terms, Quantity(sign, abs(complex(found.at(k))), "N"), lambda total, arm: abs(total) / arm, length)
 
 
-def _lever_lines(project: Project, scale: Scale) -> list[str]:
+def lever_lines(project: Project, scale: Scale) -> list[str]:
     """Sum of the moments about the pole of Zhukovsky's lever: letters, then numbers; arms in mm as they are drawn."""
     k, study, mm = project.force_index, project.study, scale.mm
     least, own = study.forces.force_size(k) * project.mechanism.crank.speed, study.lever.hung[-1]
