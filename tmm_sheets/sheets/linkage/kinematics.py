@@ -364,19 +364,19 @@ def _named_angles(project: Project, s: PlayerStage) -> None:
     _, far, *_ = (step.name for step in plan)
     pivot, start = here.at(c.pivot), float(cycle.world(cycle.turned[0]))
     angles = {k: float(plan[f"φ_{k}k"].value) for k in (1, 2)}
-    longer = max(angles, key=lambda k: abs(angles[k]))
+    shorter, longer = sorted(angles, key=lambda k: abs(angles[k]))
     for k, angle in angles.items():
         name = f"{c.pin}_{k}k"
         for end in (c.pivot, far):
             here.pen(name, "link", f"{end}–{name}").line(here.at(end), here.at(name), "hidden")
         here.dot(name, 0.8, "main")
         here.letters(name, f"{c.pin}_{{{k}k}}", here.at(name) - pivot, gap=1.5)
-        # The shorter arc lies outside: each has a part with no other beyond it.
+        # The shorter arc lies outside: each has a part with no other beyond it, and is named there.
         lo, hi = sorted((start, start + cycle.sense * angle))
         text = f"φ_{{{k}k}} = {number(round(degrees(angle), 2), 5)}°"
         radius = c.length / s.frame.mu[1] + (9.0 if k == longer else 14.0)
-        share = 0.5 if k == longer else 0.5 + 0.2 * cycle.sense  # beyond the link in the analysed position
-        here.pen(f"φ_{k}k", "dimension").angle_mark(pivot, lo, hi, radius, text, share=share)
+        beyond = (1 + angles[shorter] / angle) / 4 if k == longer else 0.2  # the link in the analysed position
+        here.pen(f"φ_{k}k", "dimension").angle_mark(pivot, lo, hi, radius, text, share=0.5 + beyond * cycle.sense)
 
 
 def _force_graph(project: Project, s: PlayerStage, box: Box, below: bool) -> None:

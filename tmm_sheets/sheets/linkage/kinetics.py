@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import pi
@@ -156,17 +157,18 @@ def _equations(canvas: Canvas, box: Box, under: Box | None, texts: Iterable[list
 
 
 def _link_couples(project: Project, s: PlayerStage, drawn: Iterable[link_marks.Shape]) -> None:
-    """Couples of the links round their centres of mass, or their first points; moments of friction round their hinges."""
-    round_hinge: dict[str, int] = {}
+    """Couples of the links round their centres of mass, or their first points; moments of friction round their hinges.
+
+    Those round one point stand on its sides by turns: a leader through several arcs would not tell which is named.
+    """
+    around = Counter[str]()
     for shape in drawn:
         centre = project.mechanism.links[shape.link].centre or shape.block or shape.bar[0]
-        for n, c in couples_of(project, shape.link):
-            hinge = hinge_of(project, c)
-            if hinge is None:
-                _turning(s, s.at(project.study.positions.points[centre]), 7.0 + 4.0 * n, -1 + 0.2j, c)
-            else:
-                round_hinge[hinge] = round_hinge.get(hinge, -1) + 1
-                _turning(s, s.at(hinge), 6.0 + 4.0 * round_hinge[hinge], 1 - 1j, c)
+        for _, c in couples_of(project, shape.link):
+            point = hinge_of(project, c) or centre
+            n = around[point]
+            _turning(s, s.at(point), 7.0 + 4.0 * n, (-1 + 0.2j) * 1j ** (2 * n + n // 2), c)
+            around[point] += 1
 
 
 def _turning(s: PlayerStage, at: complex, radius: float, towards: complex, couple: Couple) -> None:

@@ -89,8 +89,8 @@ def _far_centre(pos: Positions, shape: Shape) -> tuple[str, ...]:
     name = m.links[shape.link].centre
     if name not in centres(m) or name in shape.bar:
         return ()
-    others = [float(np.nanmax(np.abs(np.asarray(pos.points[p].value) - base))) for p in (*shape.bar, *shape.over)]
-    others += [float(np.nanmax(np.abs(np.asarray(pos.points[p].value) - base))) for arm in shape.arms for p in arm]
+    others = [float(np.nanmax(np.abs(np.asarray(pos.points[p].value) - base)))
+              for p in (*shape.bar, *shape.over, *(end for arm in shape.arms for end in arm))]
     return (name,) if np.nanmin(np.abs(np.asarray(pos.points[name].value) - base)) > max(others) else ()
 
 
@@ -354,7 +354,10 @@ def _draw_bar(s: PlayerStage, pos: Positions, shape: Shape, hinges: list[complex
 
 
 def _corners(s: PlayerStage, pos: Positions, shape: Shape) -> None:
-    """Marks of rigid angles between the bar of a link and its arms: without them they would be read as two links in a hinge."""
+    """Marks of rigid angles between the bar of a link and its arms: without them they would be read as two links in a hinge.
+
+    None at a line that is shorter than the mark, which would only blot out the hinges at its ends.
+    """
     lines, done = outlines(s, pos, shape), set[frozenset[tuple[str, ...]]]()
     for arm in shape.arms:
         for end, far in (arm, arm[::-1]):
@@ -362,7 +365,7 @@ def _corners(s: PlayerStage, pos: Positions, shape: Shape) -> None:
             beside = [(line, name) for line in lines if line != arm and end in line for name in line if name != end]
             u = s.at(pos.points[far]) - z
             ways = [(line, s.at(pos.points[name]) - z) for line, name in beside]
-            if not abs(u) or not (ways := [(line, v) for line, v in ways if abs(v) > symbols.CORNER]):
+            if abs(u) <= symbols.CORNER or not (ways := [(line, v) for line, v in ways if abs(v) > symbols.CORNER]):
                 continue
             line, v = min(ways, key=lambda way: round(abs(float(np.angle(way[1] / u))), 9))
             if frozenset((arm, line)) not in done:
