@@ -8,6 +8,7 @@ import pytest
 
 from tests.few import few, seldom
 from tests.project_files import project
+from tmm_sheets.drawing.ink import interrupted
 from tmm_sheets.drawing.ink_index import InkIndex, enters
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Text
@@ -21,7 +22,8 @@ def through(drawing, view, text):
     """Lines of a view through the lettering of one of its dimensions."""
     (found,) = [d for d in drawing.dimensions if d.text.startswith(text)]
     first = next(m for m in drawing.marks[found.first:found.end] if isinstance(m, Text))
-    lines = (m for m in drawing.marks if m.of == view and not isinstance(m, Text) and m.style != "text")
+    lines = (part for m in drawing.marks if m.of == view and not isinstance(m, Text) and m.style != "text"
+             for part in interrupted(m))
     ink, back = InkIndex(lines), np.exp(-1j * first.angle)
     laid = letter(found.text, 3.5)
     box = Box(0.3, -laid.descent + 0.3, laid.width - 0.3, laid.ascent - 0.3)

@@ -200,3 +200,8 @@ def test_what_is_drawn_keeps_to_its_room_and_lies_on_a_line_but_for_rounding(spr
         assert mu >= 0
         if spread > 1e-10 and mu > 0:
             assert np.ptp(x / mu + offset) <= 20.0 * (1 + 1e-9)
+
+
+def test_a_place_squeezed_to_nothing_still_has_a_scale():
+    """A full sheet may leave a plan no height: it is drawn a millimetre high, not refused."""
+    assert needed(np.array([0.0, 5.0]), np.zeros(2), 0.0) == 5.0

@@ -348,7 +348,13 @@ class Asked:
         self.made: dict[tuple[float, ...], Trial] = {}
 
     def run(self) -> Optimum:
-        """The search; CannotBuild when nothing keeps the bounds."""
+        """The search; CannotBuild when nothing keeps the bounds.
+
+        Raises
+        ------
+        CannotBuild
+            when no try can be built.
+        """
         search(lambda x: self.trial(tuple(v.at(s) for v, s in zip(self.some, x.tolist(), strict=True))).key,
                       len(self.some), self.tries)
         best = min(self.made.values(), key=lambda t: t.key)

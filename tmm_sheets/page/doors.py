@@ -165,7 +165,13 @@ LONGEST_PART, LONGEST_ENDING = 80, 8
 
 
 def place_of_file(name: str, of_group: bool) -> str:
-    """Where a file goes: of a group into the folder of its student; the client's name is made of letters and figures."""
+    """Where a file goes: of a group into the folder of its student; the client's name is made of letters and figures.
+
+    Raises
+    ------
+    HTTPException
+        for a name that is no place in the folder.
+    """
     parts = [re.sub(r"[^\w @.+=,()-]+", "-", part).strip(" -") for part in normalize("NFC", name).replace("\\", "/").split("/")]
     parts = [part for part in parts if part.strip(".")]
     suffix = Path(parts[-1] if parts else "").suffix.lower()
@@ -376,7 +382,13 @@ def is_local(host: str) -> bool:
 
 
 def limited(receive: Receive, most: int) -> Receive:
-    """Take no more than so many bytes, whatever was announced, and wait for them no longer than is sensible."""
+    """Take no more than so many bytes, whatever was announced, and wait for them no longer than is sensible.
+
+    Raises
+    ------
+    HTTPException
+        for more bytes than are taken, or none in time.
+    """
     taken, clock = 0, asyncio.get_running_loop().time
     until: float | None = clock() + LONGEST
 

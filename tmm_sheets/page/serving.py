@@ -111,7 +111,13 @@ def patient() -> type[asyncio.Protocol]:
 
 
 def listening_socket(host: str, port: int | None) -> socket.socket:
-    """A socket that listens: at the port asked for, else at ours or at a free one."""
+    """A socket that listens: at the port asked for, else at ours or at a free one.
+
+    Raises
+    ------
+    BadInput
+        when the port asked for cannot be had.
+    """
     if not host:
         raise BadInput(Problem(tell("expected an address, such as 127.0.0.1"), "--host"))
     family = socket.AF_INET6 if ":" in host else socket.AF_INET

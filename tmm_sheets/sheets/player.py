@@ -197,6 +197,7 @@ def needed(x: Any, offset: Any, room: float) -> float:
     span = float(np.ptp(x))
     if not span > 0:
         return 0.0
+    room = max(room, 1.0)  # what a full sheet has squeezed to nothing is drawn, and told to be too small
     inverse = room / span
     before = np.inf
     # Newton's steps on a convex extent only ever go down; where they do not, the points lie on one line but for rounding.

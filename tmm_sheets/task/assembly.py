@@ -289,7 +289,13 @@ def _moment(of: Givens, plan: Plan, i: int, m: MomentTable, mechanism: Mechanism
 
 def by_run(motion: OutputMotion, stroke: str, tables: Sequence[Table | None], against: float | None, name: str) -> tuple[
         list[Table | None], list[float]]:
-    """Diagram of each run, that of its stroke, and sign: it follows the motion unless the direction is fixed."""
+    """Diagram of each run, that of its stroke, and sign: it follows the motion unless the direction is fixed.
+
+    Raises
+    ------
+    CannotBuild
+        when the number of tables does not fit the strokes of a cycle.
+    """
     strokes = len({run.stroke for run in motion.runs})
     if strokes and strokes % len(tables):
         raise CannotBuild(

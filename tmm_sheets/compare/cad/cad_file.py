@@ -245,7 +245,13 @@ class DxfReader:
         return [note for note, applies in said.items() if applies]
 
     def count(self, parts: int = 0, points: int = 0) -> None:
-        """Take what was found into account: small files may come to more than the memory holds."""
+        """Take what was found into account: small files may come to more than the memory holds.
+
+        Raises
+        ------
+        CannotBuild
+            when there are more entities than a drawing of a student has.
+        """
         self.parts += parts
         self.points += points
         if self.parts > MOST_PARTS or self.points > MOST_POINTS:
@@ -255,7 +261,13 @@ class DxfReader:
             raise CannotBuild(said.format(file=self.file, parts=MOST_PARTS, points=MOST_POINTS), tell(SMALLER))
 
     def space(self, name: str, layout: Any) -> DrawingSpace:
-        """Everything drawn in a layout."""
+        """Everything drawn in a layout.
+
+        Raises
+        ------
+        CannotBuild
+            when there are more entities than a drawing of a student has.
+        """
         entities: list[Entity] = []
         found: list[DrawnStroke | Area | Writing] = []
         try:
