@@ -317,7 +317,8 @@ def digits_for(value: float, decimals: int) -> int:
 
 def of_step(step: Step, k: int = 0, symbol: str = "", own: Mapping[int, Quantity] = MappingProxyType({}), in_letters: bool = True,
             quantity: Callable[..., Quantity] = Quantity) -> str:
-    """The formula of a step at a position, see :func:`equation`; empty where its rule is none.
+    """The formula of a step at a position, see :func:`equation`; empty where its rule is none, or only tells a given number in the
+    unit of the plan.
 
     ``symbol`` stands instead of its letters. Operands are ``own`` ones by their id(), or made by ``quantity`` from letters, value,
     unit and the step or given number itself.
@@ -333,9 +334,10 @@ def of_step(step: Step, k: int = 0, symbol: str = "", own: Mapping[int, Quantity
         symbol = letters_of(name) if isinstance(x, Step) or x.symbol else number(value, 6)
         return own.get(id(x)) or quantity(symbol, value, unit, of=x)
 
-    result = made(step)
-    return equation(tree, [Quantity("", float(a)) if _is_bare(a) else made(a) for a in step.args],
-                    replace(result, symbol=symbol or result.symbol), in_letters)
+    result, operands = made(step), [Quantity("", float(a)) if _is_bare(a) else made(a) for a in step.args]
+    if [one.symbol for one in operands] == [result.symbol]:
+        return ""
+    return equation(tree, operands, replace(result, symbol=symbol or result.symbol), in_letters)
 
 
 @lru_cache(256)

@@ -11,7 +11,8 @@ from tests.sheets.moment_lines import every_line
 from tmm_sheets import kept as stored
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing import ink_index, labels
-from tmm_sheets.drawing.marks import Line, Provenance
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.marks import Box, Line, Provenance
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.linkage import friction, kinetic_frames, kinetics, link_marks
 from tmm_sheets.sheets.sheet import composed
@@ -161,3 +162,13 @@ def test_an_arm_does_not_strike_its_own_letter():
     for label, box in arms:
         line = own[label.by.name]
         assert not ink_index.enters(line.a, line.b - line.a, box.x0 + 0.2, box.y0 + 0.2, box.x1 - 0.2, box.y1 - 0.2), label.text
+
+
+def test_names_of_two_couples_round_one_point_stand_on_its_sides():
+    """Inertia and load of the rocker of task 8 act in opposite senses: which is which must be told."""
+    project, canvas = Project(read("sixbar/8:3")), Canvas()
+    kinetics.group(project, canvas, Box(450.0, 300.0, 830.0, 580.0), {"group": 1})
+    named = {label.text: label for label in canvas.labels}
+    one, other = named["M_{и5}"], named["M_{5}"]
+    assert (one.anchor - other.anchor).real < -7.0
+    assert (one.away * other.away.conjugate()).real < 0

@@ -414,6 +414,6 @@ def equations(plan: Plan, names: Iterable[str], letters: bool) -> Iterator[str]:
         least = _decimals(of) if isinstance(of, Step) else 0
         return Quantity(symbol, value, unit, digits_for(value, least), least) if least else Quantity(symbol, value, unit)
 
-    for step in (plan[name] for name in names if name in plan and plan[name].rule.name != "given centre distance"):
+    for step in (plan[name] for name in names if name in plan):
         if said := of_step(step, in_letters=letters, quantity=quantity):
             yield said
