@@ -16,6 +16,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import pairwise
 from math import inf
+from operator import mul
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -27,7 +28,6 @@ from tmm_sheets.sheets.player import needed
 from tmm_sheets.words import Remark, marked
 
 if TYPE_CHECKING:
-    from tmm_sheets.project import Project
     from tmm_sheets.sheets.views import ViewPlace
 
 GAP = 6.0
@@ -389,7 +389,7 @@ SHOWN = 20.0
 def fixed(box: Box) -> BorderNode:
     """What keeps the size it has."""
     size = (box.width, box.height)
-    return leaf(box, Need(least=size, most=size, drawn=lambda w, h: w * h))
+    return leaf(box, Need(least=size, most=size, drawn=mul))
 
 
 def reaching(box: Box, z: Any, d: Any, inset: tuple[float, float, float, float],
@@ -438,10 +438,9 @@ def stepped(view: ViewPlace, least: tuple[float, float], drawn: Callable[[int, i
     return leaf(view.box, Need(least=least, drawn=lambda w, h: max(known(int(w), int(h)), 1.0)), share)
 
 
-def rows(project: Project, view: ViewPlace, count: int, head: float, row: tuple[float, float],
-          widths: tuple[float, float]) -> BorderNode:
+def rows(count: int, head: float, row: tuple[float, float], widths: tuple[float, float]) -> BorderNode:
     """Need of a table with so many rows under its heading: rows from the least height to the usual one."""
-    need = Need(least=(widths[0], head + row[0] * count), most=(widths[1], head + row[1] * count), drawn=lambda w, h: w * h)
+    need = Need(least=(widths[0], head + row[0] * count), most=(widths[1], head + row[1] * count), drawn=mul)
     return BorderNode(need, area=need.least[0] * need.most[1])
 
 

@@ -412,8 +412,8 @@ def zone(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
 
 def spring(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
     """The force of a cam's spring and that of inertia."""
-    span, diagram = function("cam.spring_diagram")(project.cam, view.box)
-    yield Measured(_graph("F, Q"), round(diagram.tall.mm(span)), CURVE, marked("leave out a view of the sheet"))
+    diagram = function("cam.spring_diagram")(project.cam, view.box)
+    yield Measured(_graph("F, Q"), round(diagram.high - diagram.low), CURVE, marked("leave out a view of the sheet"))
 
 
 def teeth(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:

@@ -28,7 +28,7 @@ def test_the_table_in_a_free_corner_asks_for_no_place_of_its_own(name, scale):
     """It was counted under the figure: rocker cams stood at 1:1 where 2:1 fits."""
     follower, boxes = places(name)
     box = boxes["cam_profile.profile"]
-    assert 1e-3 / cam_profile.largest(follower, box.width, box.height).mu == pytest.approx(scale)
+    assert 1e-3 / cam_profile.pictured(follower, box).scale.mu == pytest.approx(scale)
 
 
 @pytest.mark.parametrize("name", ["lugansk/cam_rocker", "transport/press@06-ЭПС-411", "transport/crusher@11-СДМ-314"])

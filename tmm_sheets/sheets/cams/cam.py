@@ -6,7 +6,8 @@ from cmath import rect
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import ceil, degrees, pi, radians
+from math import ceil, degrees, inf, pi, radians
+from operator import mul
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -19,6 +20,7 @@ from tmm_sheets.drawing.lettering import fitted, letter, size_for
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.text_layout import needs, wrapped
 from tmm_sheets.numbers import fixed, number
+from tmm_sheets.sheets.border_solver import BorderNode, Need, leaf
 from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.player import OVER, PlayerStage, placed, play
 from tmm_sheets.words import tr
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_motion import FollowerMotion
     from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.views import ViewPlace
 
 HEADS = 66.0
 """Height the diagrams leave to headings, axes and dimensions, mm."""
@@ -59,9 +62,18 @@ def distinct(labels: tuple[str, ...], x: Points | NDArray[np.float64]) -> list[i
     return [k for k in range(len(labels)) if k == 0 or abs(x[k] - x[k - 1]) > 1e-9]
 
 
-def lines_of_text(canvas: Canvas, box: Box, lines: Sequence[str]) -> None:
-    """Lines of results at the foot of a view's place."""
-    canvas.lines(complex(box.x0 + 6.0, box.y0 + 3.0 + 7.0 * (len(lines) - 1)), lines, 7.0, size_for(lines, box.width - 8.0, 3.5))
+def lines_of_text(canvas: Canvas, box: Box, lines: Sequence[str], *, beside: bool = False) -> None:
+    """Lines of results at the foot of a view's place, or ``beside`` its figure at the right."""
+    if beside:
+        canvas.lines(complex(box.x1 - text_width(lines) - 4.0, box.y1 - 34.0), lines, 8.0)
+    else:
+        at = complex(box.x0 + 6.0, box.y0 + 3.0 + 7.0 * (len(lines) - 1))
+        canvas.lines(at, lines, 7.0, size_for(lines, box.width - 8.0, 3.5))
+
+
+def text_width(lines: Sequence[str]) -> float:
+    """Width of lines of results, mm."""
+    return max(letter(line, 3.5).width for line in lines)
 
 
 def raised(box: Box, room: Box, height: float) -> tuple[Box, Box]:
@@ -92,7 +104,16 @@ def in_degrees(symbol: str) -> str:
 # --- diagrams of the motion -----------------------------------------------------------------------------------------
 
 
-def reach_of_motion(m: FollowerMotion) -> tuple[float, float]:
+def motion_place(project: Project, view: ViewPlace) -> BorderNode:
+    """The diagrams are as large as their scale factors make them: what they leave is for others."""
+    m, box = project.cam.motion, view.box
+    left, right = _reach_of_motion(m)
+    heads = HEAD + max(letter(head, 3.5).width for head in _heads(m)) + 4.0
+    width = left + max(right, heads)
+    return leaf(box, Need(least=(width, sum(m.heights) + TITLE + HEADS), most=(width, box.height), drawn=mul))
+
+
+def _reach_of_motion(m: FollowerMotion) -> tuple[float, float]:
     """How far the diagrams reach to the left and to the right of their origins, mm."""
     return max(max(m.scales.h1, m.scales.h2) + 6.0, m.circle_end + BEYOND), float(m.scales.phi.mm(m.law.fall.end)) + BEHIND
 
@@ -110,7 +131,7 @@ def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     curves = (m.curve_dds(), m.curve_ds(), m.curve_s())
     ups = [max(float(c.imag.max()), 0.0) for c in curves]
     downs = [max(float(-c.imag.min()), 0.0) for c in curves]
-    left, right = reach_of_motion(m)
+    left, right = _reach_of_motion(m)
     x0 = box.x0 + left + max(box.width - left - right, 0.0) / 2
     # Numbers and dimensions of the phases stand under the lowest diagram; what is left of a high place is in one piece under them.
     gap = min((area.height - FOOT - sum(ups) - sum(downs)) / 3, WIDEST)
@@ -173,11 +194,6 @@ def _heads(m: FollowerMotion) -> tuple[str, str, str]:
     angle = tr("{scale}  ({degrees} deg/mm)").format(scale=m.scales.phi, degrees=number(degrees(m.scales.phi.mu)))
     return (f"{m.scales.dds},  {angle},  "
             f"a_1/a_2 = {equal}{number(abs(m.plan['a_1'].value))}/{number(abs(m.plan['a_2'].value))}", first, second)
-
-
-def heads_width(m: FollowerMotion) -> float:
-    """How far the heads reach to the right of the axes, in their usual letters, mm."""
-    return HEAD + max(letter(head, 3.5).width for head in _heads(m)) + 4.0
 
 
 def _head(canvas: Canvas, at: complex, text: str, box: Box, *, both: bool) -> None:
@@ -304,8 +320,8 @@ class OverAngle:
 
 NAMED = 6.0
 """Distance of a curve from a level, mm, from which on the name of the level stands clear of it."""
-NUMBERED = 5.0
-"""Distance of ordinates of the pressure angle from which on all of them are numbered, mm."""
+NUMBERED, ORDINATES = 5.0, 4.0
+"""Distance of ordinates of the pressure angle from which on all of them are numbered, and on which they can be read, mm."""
 PRESSURE = 10.0, 8.0, 18.0, 30.0
 """Room about the graph of the pressure angle at the left, below, at the right and above, mm."""
 
@@ -315,6 +331,14 @@ def ordinates_apart(cam: Cam, width: float) -> float:
     steps = np.diff(cam.law.positions)
     across = handy(degrees(cam.law.fall.end) / max(width - PRESSURE[0] - PRESSURE[2], 1.0))
     return degrees(float(steps[steps > 1e-9].min())) / across
+
+
+def pressure_place(project: Project, view: ViewPlace) -> BorderNode:
+    """A graph over the whole turn: beyond its width more height is of no use, and its ordinates are to stand apart."""
+    def drawn(width: float, height: float) -> float:
+        return 0.6 * width * min(height, width) * min(ordinates_apart(project.cam, width) / ORDINATES, 1.0)
+
+    return leaf(view.box, Need(least=(120.0, 80.0), drawn=drawn))
 
 
 def pressure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -388,6 +412,12 @@ def _exceeded(d: OverAngle, canvas: Canvas, cam: RollerCam, letter_of: str) -> N
 # --- table ----------------------------------------------------------------------------------------------------------
 
 
+def table_place(project: Project, view: ViewPlace) -> BorderNode:
+    """As high as it is written and no narrower: it takes what the diagrams leave beside them."""
+    w, h = view.box.width, view.box.height
+    return leaf(view.box, Need(least=(w, h), most=(inf, h), drawn=mul))
+
+
 def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """S, S', S'' and the pressure angle in the numbered positions; without upper dwell 8 and 8' are one."""
     cam: Cam = project.cam
@@ -433,6 +463,18 @@ def _check_values(cam: Cam, second: Mapping[str, Any], letter_of: str) -> Iterat
 # --- spring ---------------------------------------------------------------------------------------------------------
 
 
+GRAPH = 45.0
+"""Height of a graph that can be read, mm."""
+
+
+def spring_place(project: Project, view: ViewPlace) -> BorderNode:
+    """A graph with its lines beside it or under it, where they leave it the height to be read."""
+    def drawn(width: float, height: float) -> float:
+        return 0.6 * width * height * min(max(spring_height(width, height) / GRAPH, 0.05), 1.0)
+
+    return leaf(view.box, Need(least=(0.8 * view.box.width, 80.0), drawn=drawn))
+
+
 def spring(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Force of the closing spring against the force of inertia over the cam angle, with the least ratio of both."""
     cam: Cam = project.cam
@@ -440,10 +482,7 @@ def spring(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     assert spring is not None
     steps = spring.course
     phi, force, inertia = (step.value for step in steps)
-    lines = spring_lines(spring, law.symbol == "S")
-    text = max(letter(line, 3.5).width for line in lines) + 16.0
-    beside = _lines_beside(box.width, box.height)
-    _, d = spring_diagram(cam, box)
+    d = spring_diagram(cam, box)
     canvas.title(box, tr("Closing spring"), f"{d.tall},  {d.across}")
     course, found = d.placed(canvas, spring.course_plan), d.placed(canvas, spring.plan)
     d.axes(course, steps[1], (10.0, 8.0), tr("F, Q, N"), 4.5)
@@ -460,22 +499,18 @@ def spring(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     worst = float(spring.force(law.s(spring.worst_phi)))
     for step, y in zip(steps[1:], (worst, worst / spring.worst), strict=True):
         course.dot(step, 0.8, "main", complex(course.frame(spring.worst_phi + 1j * y)))
-    if not beside:
-        lines_of_text(canvas, box, lines)
-        return
-    canvas.lines(complex(box.x1 - text + 12.0, box.y1 - 34.0), lines, 8.0)
+    lines_of_text(canvas, box, spring_lines(spring, law.symbol == "S"), beside=_lines_beside(box.width, box.height))
 
 
-def spring_diagram(cam: Cam, box: Box) -> tuple[float, OverAngle]:
-    """What the forces of the spring and of inertia extend over, N, and where they stand over the cam angle."""
+def spring_diagram(cam: Cam, box: Box) -> OverAngle:
+    """Where the forces of the spring and of inertia stand over the cam angle."""
     assert cam.spring is not None
     _, force, inertia = (step.value for step in cam.spring.course)
     lines = spring_lines(cam.spring, cam.law.symbol == "S")
-    text = max(letter(line, 3.5).width for line in lines) + 16.0
-    area = box.inset(14, 8, text + 12, 32) if _lines_beside(box.width, box.height) else box.inset(14, 14 + 7.0 * len(lines), 20, 32)
-    every = np.concatenate((force, inertia))
-    span = float(min(inertia.min(), 0.0)), float(every.max())
-    return float(np.ptp(every)), OverAngle.fitted(area, cam.law.fall.end, span, ("μ_F", tr("N/mm")))
+    area = box.inset(14, 8, text_width(lines) + 28, 32) if _lines_beside(box.width, box.height) else \
+        box.inset(14, 14 + 7.0 * len(lines), 20, 32)
+    span = float(min(inertia.min(), 0.0)), float(max(force.max(), inertia.max()))
+    return OverAngle.fitted(area, cam.law.fall.end, span, ("μ_F", tr("N/mm")))
 
 
 def _lines_beside(width: float, height: float) -> bool:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from cmath import phase, rect
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import pairwise
-from math import cos, degrees, pi, sin
+from math import cos, degrees, inf, pi, sin
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tmm_sheets.construction.equation import digits_for
-from tmm_sheets.construction.scale import Scale, fitting
+from tmm_sheets.construction.scale import STANDARD, fitting
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.ink_index import InkIndex
@@ -19,16 +20,21 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
 from tmm_sheets.drawing.text_layout import LEAST, needs
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cams.cam import ANGLE, distinct, in_degrees, in_mm, lines_of_text, raised
+from tmm_sheets.sheets.border_solver import BorderNode, stepped
+from tmm_sheets.sheets.cams.cam import ANGLE, distinct, in_degrees, in_mm, lines_of_text, raised, text_width
 from tmm_sheets.sheets.components import clear_dimensions, listed
 from tmm_sheets.sheets.player import PlayerStage, placed, play, ratio, standard
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from tmm_sheets.methods.cams.cam_inversion import Inversion
     from tmm_sheets.methods.cams.cam_profile import Cam, FlatCam, RollerCam
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.views import ViewPlace
 
 EDGE, FOOT = 3.0, 4.0
 """Room left free at both sides of the place and at its foot, mm."""
@@ -36,10 +42,39 @@ ROLLER = 8.0, 34.0, 8.0, 24.0
 """Room round the figure for the roller's radius at the left, below (what follows from it), right and above, mm."""
 
 
+def profile_place(project: Project, view: ViewPlace) -> BorderNode:
+    """The profile at a standard scale, with its table where that leaves the scale."""
+    return stepped(view, (180.0, 180.0), _profile_area(project.cam, table_size(project.cam)))
+
+
+@lru_cache(maxsize=4)
+def _profile_area(cam: Cam, table: tuple[float, float]) -> Callable[[int, int], float]:
+    """Area that the figure of a profile takes of places of some width and height, mm: the same in all ways to arrange a sheet."""
+    *_, sizes = _figure(cam)
+    beside = 2 * (EDGE + margin(cam))
+    alone = 28.0 + (14.0 if cam.kind == "rocker" else GUIDE)  # the heading, where the table has a free corner
+    with_table = alone + table[1] + 6.0
+    mus = [real / drawn * 1e-3 for real, drawn in STANDARD]
+
+    @cache
+    def in_place(width: int, height: int) -> float:
+        scale, larger = (int(fitting(sizes * 1e3, (width - beside, height - over)).max()) for over in (with_table, alone))
+        if scale < 0:
+            return 1.0
+        mu, over = mus[scale], with_table
+        if larger > scale and pictured(cam, Box(0.0, 0.0, width, height), table).scale.mu < mu:
+            mu, over = mus[larger], alone
+        w, h = (sizes / mu + (beside, over)).T
+        shown = (w * h)[(w <= width + 1e-6) & (h <= height + 1e-6)]
+        return float(shown.max()) if len(shown) else 1.0
+
+    return in_place
+
+
 def profile(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Centre profile by inversion with all follower lines and arcs, roller circles, working profile, follower."""
     cam: Cam = project.cam
-    picture, first = _pictured(cam, box), len(canvas.marks)
+    picture, first = pictured(cam, box), len(canvas.marks)
     canvas.scales[cam.inversion.plan.name] = picture.scale
     canvas.title(box, tr("Construction of the cam profile"), f"{ratio(picture.scale)}   {picture.scale}")
     inv, at = cam.inversion, picture.at
@@ -91,7 +126,7 @@ def _radius_of_roller(s: PlayerStage, picture: _ProfilePicture, text: str, first
     s.canvas.put(laid, complex(value(u).x0, value(u).y0 + laid.descent), 0.0, text)
 
 
-def _pictured(cam: Cam, box: Box, table: tuple[float, float] | None = None) -> _ProfilePicture:
+def pictured(cam: Cam, box: Box, table: tuple[float, float] | None = None) -> _ProfilePicture:
     """The figure in a place, which leaves the foot of it to the table of sizes where that has no free corner."""
     room = Box(box.x0 + EDGE, box.y0 + FOOT, box.x1 - EDGE, box.y1 - 24)
     picture, size = _ProfilePicture(cam, room), table or table_size(cam)
@@ -109,10 +144,10 @@ GUIDE = 22.0
 
 
 @lru_cache(maxsize=4)
-def _figure(cam: Cam) -> tuple[Points, float, list[complex], Points]:
+def _figure(cam: Cam) -> tuple[Points, float, list[complex], NDArray[np.float64]]:
     """Points round the figure of the profile, the height of the guide's lower edge, the directions it may be turned to.
 
-    With it the width and height of the points in each direction, a complex number, m.
+    With them width and height of the figure in each direction, shape (n, 2), m.
     """
     inv = cam.inversion
     radius = float(getattr(cam, "roller", 0.0))
@@ -126,37 +161,20 @@ def _figure(cam: Cam) -> tuple[Points, float, list[complex], Points]:
         swept += [np.array(ends) for ends in _plates(cast("FlatCam", cam))]
     points = np.concatenate([*every, *swept])
     marks = inv.axis.value
-    # The guide of a translating follower stands clear of the roller in position 0.
-    guide = max(float(marks.imag.max()), float(marks[0].imag) + radius)
-    turns = [1.0 + 0j]
+    # The guide of a translating follower stands clear of the roller in position 0; a rocker has none.
+    guide, turns = max(float(marks.imag.max()), float(marks[0].imag) + radius), [1.0 + 0j]
     if cam.kind == "rocker":
         along = complex(np.exp(-1j * phase(complex(inv.plan["A_0"].value))))
         turns += [1j, -1.0 + 0j, -1j, *(along * complex(np.exp(1j * k * pi / 12)) for k in np.argsort(np.arange(24) % 6))]
+        guide = -inf
     turned = points * np.array(turns)[:, None]
-    return points, guide, turns, np.ptp(turned.real, axis=1) + 1j * np.ptp(turned.imag, axis=1)
+    high = np.maximum(np.ptp(turned.imag, axis=1), guide - points.imag.min())
+    return points, guide, turns, np.array([np.ptp(turned.real, axis=1), high]).T
 
 
 def margin(cam: Cam) -> float:
     """Room left free at both sides of the figure, mm: the rays of a rocker end in letters."""
     return 7.0 if cam.kind == "rocker" else 0.0
-
-
-def figure_sizes(cam: Cam) -> list[tuple[float, float]]:
-    """Width and height of the figure, m, in every direction it may be turned to."""
-    points, guide, _, sizes = _figure(cam)
-    least = 0.0 if cam.kind == "rocker" else guide - float(points.imag.min())
-    return [(float(size.real), max(float(size.imag), least)) for size in sizes]
-
-
-def over(cam: Cam, table: tuple[float, float]) -> tuple[float, float]:
-    """What stands over and under the figure, mm: the heading alone, where the table has a free corner, and with the table."""
-    heading = 28.0 + (14.0 if cam.kind == "rocker" else GUIDE)
-    return heading, heading + table[1] + 6.0
-
-
-def largest(cam: Cam, width: float, height: float, table: tuple[float, float] | None = None) -> Scale:
-    """Scale to which the figure is drawn in a place of this size, mm; ``table`` is the size of its table, where it is known."""
-    return _pictured(cam, Box(0.0, 0.0, width, height), table).scale
 
 
 _ROUND = np.exp(1j * np.arange(72) * pi / 36)
@@ -180,17 +198,13 @@ class _ProfilePicture:
         points, self.guide, turns, sizes = _figure(cam)
         side, over = margin(cam), 0.0 if self.kind == "rocker" else GUIDE
         rooms = [room.width - 2 * side, room.height - 2 * side]
-        best = int(fitting(np.array([sizes.real, sizes.imag]).T * 1e3, rooms).argmax())
+        best = int(fitting(sizes * 1e3, rooms).argmax())
         self.turn, self.points = turns[best], points * turns[best]
-        fitted = [*zip((float(sizes[best].real), float(sizes[best].imag)), rooms, strict=True)]
-        if over:
-            fitted.append((self.guide - float(self.points.imag.min()), room.height - over))
-        self.scale = standard(*fitted)
-        x0, x1 = float(self.points.real.min()), float(self.points.real.max())
-        y0, y1 = float(self.points.imag.min()), float(self.points.imag.max())
-        top = max(self.scale.mm(y1), self.scale.mm(self.guide) + over) if over else self.scale.mm(y1)
-        middle = complex(self.scale.mm((x0 + x1) / 2), (self.scale.mm(y0) + top) / 2)
-        self.origin = complex(room.centre - middle - BESIDE * max(rooms[0] - float(self.scale.mm(x1 - x0)) - LETTERS, 0.0))
+        real = Box.around(self.points)
+        self.scale = standard((real.width, rooms[0]), (real.height, rooms[1]), (self.guide - real.y0, room.height - over))
+        top = max(self.scale.mm(real.y1), self.scale.mm(self.guide) + over)
+        middle = complex(self.scale.mm(real.centre.real), (self.scale.mm(real.y0) + top) / 2)
+        self.origin = complex(room.centre - middle - BESIDE * max(rooms[0] - float(self.scale.mm(real.width)) - LETTERS, 0.0))
         self.roller = float(self.scale.mm(radius))
         self.hole = min(1.8, 0.3 * self.roller)  # that its axis turns in
         self.start = phase(complex(inv.plan["A_0" if self.kind == "rocker" else "B_0"].value) * self.turn)
@@ -507,24 +521,35 @@ def _phase_angles(s: PlayerStage, picture: _ProfilePicture) -> None:
     canvas.label(origin + rect(around, middle), "−ω", rect(1, middle) * (1 if around > reach else -1), 5.0, 1.0)
 
 
+def roller_place(project: Project, view: ViewPlace) -> BorderNode:
+    """The choice of the roller at a standard scale."""
+    cam = cast("RollerCam", project.cam)  # others have no such view
+    real, (left, below, right, above) = sharpest(cam)[2], ROLLER
+
+    def drawn(width: int, height: int) -> float:
+        try:
+            mu = standard((real.width, width - left - right), (real.height, height - below - above)).mu
+        except CannotBuild:
+            return 1.0
+        return (real.width / mu + left + right) * (real.height / mu + below + above)
+
+    return stepped(view, (8.0 + text_width(roller_lines(cam, 2e-4)), 104.0), drawn, 0.5)
+
+
 def roller(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Smallest radius of curvature by three points of the centre profile; the radius of the roller by both rules."""
     cam = cast("RollerCam", project.cam)
     plan = cam.inversion.plan
     d, centre = complex(plan["D_ρ"].value), complex(plan["M"].value)
     chords = [complex(plan[f"{n}_ρ"].value) for n in "EDG"]
-    beside, near = _sharpest(cam)
-    every = np.array([*near, centre])
-    left, below, right, above = ROLLER
-    room = box.inset(left, below, right, above)
-    scale = standard((float(np.ptp(every.real)), room.width), (float(np.ptp(every.imag)), room.height))
-    box, room = raised(box, room, scale.mm(float(np.ptp(every.imag))))
+    beside, near, real = sharpest(cam)
+    room = box.inset(*ROLLER)
+    scale = standard((real.width, room.width), (real.height, room.height))
+    box, room = raised(box, room, scale.mm(real.height))
     canvas.title(box, tr("Choice of the radius of the roller"), ratio(scale))
-    origin = room.centre - scale.mm(complex((every.real.max() + every.real.min()) / 2, (every.imag.max() + every.imag.min()) / 2))
-
-    s = placed(canvas, plan, complex(origin), scale.mu)
+    s, course = (placed(canvas, of, complex(room.centre - scale.mm(real.centre)), scale.mu) for of in (plan, beside.plan))
     at = s.frame
-    placed(canvas, beside.plan, complex(origin), scale.mu).curve(beside.centres, at(near))
+    course.curve(beside.centres, at(near))
     for (a, b), end in zip(pairwise(chords), "DG", strict=True):
         s.line(f"{end}_ρ", at(a), at(b), "thin")
         s.pen("M", "construction").ray_line(at(centre), at((a + b) / 2), "construction", 0.9 * abs(at(b) - at(a)) + 3.0, 2.5)
@@ -540,10 +565,10 @@ def roller(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         canvas.label(at(p), name, outwards + 0.6 * (p - d) / max(abs(p - d), 1e-12), 3.5, 1.5)
     canvas.label(at(centre), "M", -outwards, 3.5, 1.0)
     canvas.label(at((d + centre) / 2), "ρ_{min}", 1j * outwards, 3.5, 2.0)
-    lines_of_text(canvas, box, _roller_lines(cam, scale.mu))
+    lines_of_text(canvas, box, roller_lines(cam, scale.mu))
 
 
-def _roller_lines(cam: RollerCam, mu: float) -> list[str]:
+def roller_lines(cam: RollerCam, mu: float) -> list[str]:
     """The least radius of curvature as it is measured, and the radius of the roller by both rules."""
     drawn_rho, rules = float(cam.inversion.plan["ρ_min"].value), cam.roller_rules
     found = tr("|MD| = {length} mm;  ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm); of the second disc {second} mm") \
@@ -563,24 +588,17 @@ def _roller_lines(cam: RollerCam, mu: float) -> list[str]:
     return lines
 
 
-def _sharpest(cam: RollerCam) -> tuple[Inversion, Points]:
-    """Positions about the sharpest point of the centre profile, and the centres of the roller as far as they are drawn, m."""
+@lru_cache(maxsize=4)
+def sharpest(cam: RollerCam) -> tuple[Inversion, Points, Box]:
+    """Positions about the sharpest point of the centre profile, the centres of the roller as far as they are drawn, m.
+
+    And the rectangle round these and the centre of curvature.
+    """
     d, centre = (complex(cam.inversion.plan[name].value) for name in ("D_ρ", "M"))
     beside = cam.at(float(cam.three[1]) + np.linspace(-0.6, 0.6, 121))
     course = beside.centres.value
-    return beside, course[np.abs(course - d) < 0.75 * abs(centre - d)]
-
-
-def roller_width(cam: RollerCam) -> float:
-    """Width that its lines take, mm."""
-    return 8.0 + max(letter(line, 3.5).width for line in _roller_lines(cam, 2e-4))
-
-
-@lru_cache(maxsize=4)
-def roller_extent(cam: RollerCam) -> tuple[float, float]:
-    """Width and height of the figure for the roller's radius, m."""
-    every = np.append(_sharpest(cam)[1], complex(cam.inversion.plan["M"].value))
-    return float(np.ptp(every.real)), float(np.ptp(every.imag))
+    near = course[np.abs(course - d) < 0.75 * abs(centre - d)]
+    return beside, near, Box.around(np.append(near, centre))
 
 
 def _mm(length: float) -> str:

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from tmm_sheets.construction.equation import Quantity, digits_for, equation
-from tmm_sheets.construction.scale import Scale, handy
+from tmm_sheets.construction.scale import CURVE, Scale, handy
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, hatch_polygon
 from tmm_sheets.drawing.ink import segment_inside
-from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box, Points
+from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.symbols import bar, hinge
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cams.cam import ANGLE, OverAngle, centred, distinct, lines_of_text, raised
+from tmm_sheets.sheets.border_solver import BorderNode, Need, leaf, reached, stepped
+from tmm_sheets.sheets.cams.cam import ANGLE, OverAngle, centred, distinct, lines_of_text, raised, text_width
 from tmm_sheets.sheets.components import clear_dimensions
 from tmm_sheets.sheets.player import PlayerStage, placed, play, ratio, standard
 from tmm_sheets.words import tr
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_profile import FlatCam, RockerCam, TappetCam
     from tmm_sheets.methods.cams.cam_zone import Zone
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.views import ViewPlace
 
 
 NORMAL = 6.0
@@ -52,24 +53,24 @@ def _tops(z: Zone, apex: complex, stroke: float) -> list[complex]:
             for t, side in _touches(z)]
 
 
-def fitted_tappet(cam: TappetCam, rays: bool, width: float, height: float) -> tuple[float, float, tuple[float, float]]:
-    """Scale factor of a tappet's zone in so much room, mm; depth (m, negative) to which it is drawn; edges of its ink, m.
+def fitted_tappet(cam: TappetCam, rays: bool, width: float, height: float) -> tuple[float, Box]:
+    """Scale factor of a tappet's zone in so much room, mm, and the rectangle round its ink, m.
 
     The finest scale factor counts, then the deepest zone.
     """
-    return min([(handy(max((edges[1] - edges[0]) / width, high / height)), -depth, edges)
-                for depth, high, edges in _zones_of_tappet(cam, rays)])
+    return min(((handy(max(real.width / width, real.height / height)), real) for real in _zones_of_tappet(cam, rays)),
+               key=lambda found: (found[0], found[1].y0))
 
 
 @lru_cache(maxsize=4)
-def _zones_of_tappet(cam: TappetCam, rays: bool) -> list[tuple[float, float, tuple[float, float]]]:
-    """Depth and height of a tappet's zone, m, and the edges of its ink, for each depth that is tried."""
+def _zones_of_tappet(cam: TappetCam, rays: bool) -> list[Box]:
+    """Rectangle round the ink of a tappet's zone, m, for each depth that is tried."""
     z, stroke, slope = cam.zone, cam.law.stroke, tan(cam.zone.alpha)
     axis, apex = complex(z.apex.value), complex(z.plan["V"].value if "V" in z.plan else z.apex.value)
     ink = np.concatenate((z.curve.value.real, _beyond(z, rays).real, [t.real for t in _tops(z, apex, stroke)], [0.0]))
     left, right = float(ink.min()), float(ink.max())
     depths = [share * (stroke + z.s0) * min(1.0, 0.6 / slope) + max((apex - axis).imag, 0.0) for share in (0.3, 0.22, 0.15)]
-    return [(depth, stroke - apex.imag + depth, (min(left, apex.real - depth * slope), max(right, apex.real + depth * slope)))
+    return [Box(min(left, apex.real - depth * slope), apex.imag - depth, max(right, apex.real + depth * slope), stroke)
             for depth in depths]
 
 
@@ -77,6 +78,27 @@ def stroke_in(cam: TappetCam, rays: bool, width: float, height: float) -> float:
     """Height, mm, that the stroke has on the zone of a tappet in a place of so many mm."""
     left, below, right, above = TAPPET
     return cam.law.stroke / fitted_tappet(cam, rays, width - left - right, height - below - above)[0]
+
+
+NUMBERED, CROWDED = CURVE, 30.0
+"""Heights of a curve on which all positions are numbered, and below which their numbers stand on one another, mm."""
+
+
+def tappet_place(project: Project, view: ViewPlace) -> BorderNode:
+    """A curve S(S′) with the numbers of all positions on it, which must be so high that they can be read."""
+    cam, rays = cast("TappetCam", project.cam), bool(view.options.get("rays"))  # others have no such view
+
+    def drawn(width: int, height: int) -> float:
+        stroke = stroke_in(cam, rays, width, height)
+        return 0.6 * width * height * min(stroke / NUMBERED, 1.0) * reached(stroke, CROWDED)
+
+    return stepped(view, (0.88 * view.box.width, 0.8 * view.box.height), drawn)
+
+
+def wide(project: Project, view: ViewPlace) -> BorderNode:
+    """Need of a view that takes what room there is, down to a part of its box below which it cannot be read."""
+    w, h = view.box.width, view.box.height
+    return leaf(view.box, Need(least=(0.9 * w, 0.8 * h), drawn=lambda w, h: 0.6 * w * h))
 
 
 def of_tappet(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -89,21 +111,20 @@ def of_tappet(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     letter_of, rays = options.get("angle", ANGLE), bool(options.get("rays"))
     beyond, touches, tops = _beyond(z, rays), _touches(z), _tops(z, apex, stroke)
     room, first = box.inset(*TAPPET), len(canvas.marks)
-    mu, lowest, edges = fitted_tappet(cam, rays, room.width, room.height)
-    depth = -lowest
-    low = apex - 1j * depth
+    mu, real = fitted_tappet(cam, rays, room.width, room.height)
+    low = complex(apex.real, real.y0)
+    wide = (apex - low).imag * slope
     scale = Scale("μ_S", mu, tr("m/mm"))
-    box, room = raised(box, room, scale.mm(stroke - low.imag))
+    box, room = raised(box, room, scale.mm(real.height))
     canvas.scales[z.plan.name] = scale
     canvas.title(box, tr("Main dimensions of the cam"), tr("μ_S = μ_S' = {factor} m/mm").format(factor=number(scale.mu)))
-    origin = room.centre - scale.mm(complex(sum(edges) / 2, (stroke + low.imag) / 2))
-
+    origin = room.centre - scale.mm(real.centre)
     stage, smooth = placed(canvas, z.plan, origin, mu), placed(canvas, z.curve_plan, origin, mu)
     at = stage.frame
     v, o, b, c = at(apex), stage.at("O"), stage.at("B"), stage.at("C")
-    hatch_polygon(canvas, np.array([v, at(low - depth * slope), at(low + depth * slope)]), 4.0)
+    hatch_polygon(canvas, np.array([v, at(low - wide), at(low + wide)]), 4.0)
     for (touch, side), top, step, border in zip(touches, tops, z.touching, z.borders, strict=True):
-        stage.line(border, at(top), at(low - depth * slope * side), "axis")
+        stage.line(border, at(top), at(low - wide * side), "axis")
         if abs(touch) > 0:
             stage.dot(step, 0.6, "main", at(touch))
         canvas.label(at(touch), step.name, side + 0j, 3.5, 1.0)
@@ -196,63 +217,49 @@ DEEP = 0.9
 """Greatest depth to which the zone of a rocker is drawn, in lengths of its arm."""
 
 
-def _of_rocker(cam: RockerCam, rays: bool) -> Points:
-    """What the figure of a rocker's zone has in it, m, whatever its depth."""
-    z = cam.zone
-    beyond = z.tips(z.beyond).value if rays and z.beyond is not None else z.curve.value[:0]
-    return np.array([complex(z.plan["A"].value), complex(z.apex.value), 0j, *np.asarray(z.axis.value), *z.curve.value, *beyond])
-
-
-def fitted_rocker(cam: RockerCam, rays: bool, box: Box) -> tuple[float, float, Box, bool]:
-    """Scale factor of a rocker's zone in its place, depth (m, negative) to which it is drawn, its room, whether lines are beside.
+def fitted_rocker(cam: RockerCam, rays: bool, box: Box) -> tuple[float, Box, Box, bool]:
+    """Scale factor of a rocker's zone in its place, the rectangle round its ink, m, its room, whether lines are beside.
 
     The finest scale factor counts, then the deepest zone.
     """
-    every, apex, measured = _of_rocker(cam, rays), complex(cam.zone.apex.value), _rocker_lines(cam)
-    x0, x1, y1 = float(every.real.min()), float(every.real.max()), float(every.imag.max())
-    text = max(letter(line, 3.5).width for line in measured) + 14.0
-    rooms = box.inset(14, 8, text + 6, 30), box.inset(12, 10 + 7.0 * len(measured), 12, 30)
+    z, measured = cam.zone, _rocker_lines(cam)
+    apex = complex(z.apex.value)
+    ink = Box.around(np.array([complex(z.plan["A"].value), apex, 0j, *z.axis.value, *z.curve.value, *_beyond(z, rays)]))
+    rooms = box.inset(14, 8, text_width(measured) + 20, 30), box.inset(12, 10 + 7.0 * len(measured), 12, 30)
 
     def fitted(room: Box, share: float) -> tuple[float, float]:
         """Scale factor, and the depth (m, negative) to which the zone is drawn: below the axis a share of the arm."""
         low = apex.imag - share * cam.arm
-        return handy(max((x1 - x0) / room.width, (y1 - low) / room.height)), low
+        return handy(max(ink.width / room.width, (ink.y1 - low) / room.height)), low
 
     # What is measured stands beside the figure in a wide place, unless the figure becomes larger over it.
     at_side, over = (min(fitted(room, share) for share in (0.4, 0.3, 0.2, 0.12)) for room in rooms)
     beside = box.width > 1.3 * box.height and at_side[0] <= over[0]
     room, (mu, low) = (rooms[0], at_side) if beside else (rooms[1], over)
-    return mu, min(low, max(y1 - mu * room.height, apex.imag - DEEP * cam.arm)), room, beside  # what height is left is zone
+    low = min(low, max(ink.y1 - mu * room.height, apex.imag - DEEP * cam.arm))  # what height is left is zone
+    return mu, ink._replace(y0=low), room, beside
 
 
 def of_rocker(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Positions of the rocker with the segments AB psi', rays under the permitted pressure angle, allowed zone, r0 and l0."""
     cam = cast("RockerCam", project.cam)
     z = cam.zone
-    rays, every = bool(options.get("rays")), _of_rocker(cam, bool(options.get("rays")))
-    x0, x1, y1 = float(every.real.min()), float(every.real.max()), float(every.imag.max())
-    measured = _rocker_lines(cam)
-    text = max(letter(line, 3.5).width for line in measured) + 14.0
-    mu, low, room, beside = fitted_rocker(cam, rays, box)
+    rays, letter_of = bool(options.get("rays")), options.get("angle", ANGLE)
+    mu, real, room, beside = fitted_rocker(cam, rays, box)
     scale = Scale("μ_l", mu, tr("m/mm"))
     canvas.scales[z.plan.name] = scale
     canvas.title(box, tr("Main dimensions of the cam"), f"{scale}")
-    origin = complex(room.centre - scale.mm(complex((x0 + x1) / 2, (y1 + low) / 2)))
+    origin = complex(room.centre - scale.mm(real.centre))
     stage, smooth = placed(canvas, z.plan, origin, mu), placed(canvas, z.curve_plan, origin, mu)
     at = stage.frame
-    picture = Box(at(complex(x0)).real - 6, at(1j * low).imag, at(complex(x1)).real + 6, at(1j * y1).imag + 4)
+    picture = Box.around(at(real.corners)).inset(-6.0, 0.0, -6.0, -4.0)
     _permitted(stage, cam, picture, scale)
     _rocker_positions(stage, cam)
     smooth.curve(z.curve)
-    letter_of = options.get("angle", ANGLE)
     if rays:
         _rays(stage, z, letter_of)
     _rocker_and_axis(stage, cam, picture, letter_of)
-    measured = _rocker_lines(cam, scale)
-    if not beside:
-        lines_of_text(canvas, box, measured)
-        return
-    canvas.lines(complex(box.x1 - text + 6.0, box.y1 - 40.0), measured, 8.0)
+    lines_of_text(canvas, box, _rocker_lines(cam, scale), beside=beside)
 
 
 def _permitted(s: PlayerStage, cam: RockerCam, picture: Box, scale: Scale) -> None:

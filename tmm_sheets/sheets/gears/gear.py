@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction.equation import Quantity, digits_for, of_step
-from tmm_sheets.construction.scale import Scale, fit
+from tmm_sheets.construction.scale import TOOTH, Scale, fit
 from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.drawing.marks import Box, Dimension
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
+from tmm_sheets.sheets.border_solver import BorderNode, reached, stepped
 from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.components.listed import Form, Formulas
 from tmm_sheets.sheets.gears import gear_picture
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.gears.gear_geometry import GearWheel
     from tmm_sheets.methods.gears.gear_pair import GearPair
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.views import ViewPlace
 
 PITCHES, MOST = 1.25, 1.5
 """Pitches that the view of the meshing zone must show at least, and those it shows at most."""
@@ -35,6 +37,25 @@ MESH = 18.0, 32.0
 """What comes to the meshing zone: names of circles beside it; title and edges over and under it, mm."""
 DEEPEST = 10.0
 """Specific sliding down to which the curves are followed on their way to minus infinity."""
+
+
+BESIDE = 44.0
+"""Room beside the smaller wheel: dimension of the centre distance and what is kept from it, mm."""
+OTHER = 0.2
+"""What width counts that only shows more of the greater wheel."""
+
+
+def engagement_place(project: Project, view: ViewPlace) -> BorderNode:
+    """The smaller wheel is to be seen whole, the other may be cut at both sides; teeth that are too low fill nothing."""
+    pair = project.gear
+    tooth = gear_picture.highest_tooth(pair)
+
+    def drawn(width: int, height: int) -> float:
+        mu, broken = gear_picture.picture(pair, width, height)
+        whole = width if broken else min(2 * min(w.ra for w in pair.wheels) / mu.mu + BESIDE, width)
+        return (whole + (width - whole) * OTHER) * height * reached(mu.mm(tooth), TOOTH)
+
+    return stepped(view, (180.0, 300.0), drawn)
 
 
 def engagement(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -53,6 +74,17 @@ def engagement(project: Project, canvas: Canvas, box: Box, options: dict[str, An
     picture.pole_letter()
     for wheel in picture.gear.wheels:  # when all else is on the picture
         Radii(picture, wheel).draw()
+
+
+def mesh_place(project: Project, view: ViewPlace) -> BorderNode:
+    """A pitch and a quarter of the wheels about the pole."""
+    pair = project.gear
+
+    def drawn(width: int, height: int) -> float:
+        mu = mesh_scale(pair, width, height).mu
+        return min(width, MOST * pair.p / mu + MESH[0]) * min(height, mesh_height(pair) / mu + MESH[1])
+
+    return stepped(view, (120.0, 90.0), drawn)
 
 
 def mesh(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -133,6 +165,11 @@ class _Detail:
                 continue
             a, b = (self.pole + 1j * v / self.at.scale.mu for v in sorted((low, high)))
             gap(c, a, b, text, complex(side, 0), 4, 1e3 * self.at.scale.mu)
+
+
+def sliding_place(project: Project, view: ViewPlace) -> BorderNode:
+    """Two graphs under one another; they need height more than width."""
+    return stepped(view, (130.0, 240.0), lambda width, height: min(width, 240) * min(height, 320))
 
 
 def sliding(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

@@ -12,14 +12,17 @@ from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
+from tmm_sheets.sheets.border_solver import BorderNode, stepped
 from tmm_sheets.sheets.components import clear_dimensions
 from tmm_sheets.sheets.gears.gear_marks import Window, gap
 from tmm_sheets.sheets.player import PlanFrame, ratio, stage, standard
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.scale import Scale
     from tmm_sheets.methods.gears.gear_pair import GearPair
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.views import ViewPlace
 
 MARGIN = 16.0
 """Room for the names of the circles beside the window, mm."""
@@ -45,11 +48,27 @@ SEEN = 0.5
 rule of seventeen teeth leaves some hundredths."""
 
 
-def extent(gear: GearPair) -> tuple[float, float]:
+def _extent(gear: GearPair) -> tuple[float, float]:
     """What must be seen of wheel and rack over the pole and under it, m."""
     wheel = gear.pinion
     rack = wheel.rack
     return max((rack.shift + wheel.addendum) * gear.m, wheel.ra - rack.r), rack.r - wheel.rf + BELOW * gear.m
+
+
+def _fitted(gear: GearPair, width: float, height: float) -> Scale:
+    """Scale of the picture in a place of this size, mm."""
+    return standard((PITCHES * pi * gear.m, width - LEFT - MARGIN), (sum(_extent(gear)), height - OVER))
+
+
+def place(project: Project, view: ViewPlace) -> BorderNode:
+    """A pitch and a half of the rack with what it cuts."""
+    gear = project.gear
+
+    def drawn(width: int, height: int) -> float:
+        mu = _fitted(gear, width, height).mu
+        return min(width, 1.6 * PITCHES * pi * gear.m / mu + LEFT + MARGIN) * min(height, USUAL * sum(_extent(gear)) / mu + OVER)
+
+    return stepped(view, (120.0, 110.0), drawn)
 
 
 def generating(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -70,10 +89,8 @@ class _RackPicture:
         self.gear, self.canvas, self.first = gear, canvas, len(canvas.marks)
         self.wheel = gear.pinion
         self.rack = self.wheel.rack
-        top, bottom = extent(gear)
-        inner = box.inset(LEFT, 0, MARGIN, OVER)
-        scale = standard((PITCHES * pi * gear.m, inner.width), (top + bottom, inner.height))
-        canvas.scales["gear-rack"] = scale
+        top, bottom = _extent(gear)
+        scale = canvas.scales["gear-rack"] = _fitted(gear, box.width, box.height)
         inner = canvas.title(box, tr("Generation of wheel {wheel} by the rack").format(wheel=self.wheel.number), ratio(scale))
         # What height is left goes to the wheel where its centre comes to stand on the picture: a body without it is bare paper.
         self.pole = complex((inner.x0 + LEFT + inner.x1 - MARGIN) / 2, inner.y1 - NOTES - top / scale.mu)

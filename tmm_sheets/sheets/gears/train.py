@@ -16,14 +16,21 @@ from tmm_sheets.drawing.lettering import fitted
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_layout import widened
 from tmm_sheets.numbers import fixed, is_zero, number
+from tmm_sheets.sheets import border_solver
+from tmm_sheets.sheets.border_solver import BorderNode, stepped
 from tmm_sheets.sheets.components.listed import LARGE, Lines, Table, letters_in
 from tmm_sheets.sheets.gears.gear_marks import ruled_table, sentence
 from tmm_sheets.sheets.gears.train_scheme import (
     LINKS,
+    NARROWEST,
+    OVER,
     POINTS,
+    WIDEST,
+    TrainScheme,
     draw_scheme,
     ends_of_rays,
     link_name,
+    moving_points,
     plan_of_speeds,
     rows_of_links,
     rows_of_points,
@@ -36,6 +43,49 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.gears.train import Train
     from tmm_sheets.methods.gears.train_steps import Mesh
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.views import ViewPlace
+
+def scheme_place(project: Project, view: ViewPlace) -> BorderNode:
+    """Axial view, picture of velocities and end view of a train or a reducer."""
+    views = TrainScheme(_shown(project, view))
+
+    def drawn(width: int, height: int) -> float:
+        mu = views.fitted(width, height).mu
+        whole = 2 * views.side / mu + views.beside(WIDEST + 24.0)
+        return min(width, whole) * min(height, (views.top + views.bottom) / mu + OVER)
+
+    return stepped(view, (views.beside(NARROWEST) + 60.0, 130.0), drawn)
+
+
+def speeds_place(project: Project, view: ViewPlace) -> BorderNode:
+    """A plan of speeds of rotation: rays from a pole to a line."""
+    return stepped(view, (150.0, 100.0), lambda width, height: 0.6 * width * min(height, 190))
+
+
+def table_place(project: Project, view: ViewPlace) -> BorderNode:
+    """A table, or lines, under its title with the remarks under them: rows from the least height to the greatest of use."""
+    of, head = _shown(project, view), 16.0
+    match view.draw.partition(".")[2]:
+        case "choice":  # tooth sets with the line that says how they were chosen
+            rows, head = len(project.reducer.sets) + 1, 24.0
+        case "conditions":
+            rows = 9 + 2 * bool(project.reducer.simple) + len(of.warnings)
+        case "points":
+            rows = len(moving_points(of)) + 1
+        case "table":
+            rows = len(of.names) + 1 + len(of.warnings)
+        case "willis":  # two lines for each mesh
+            rows = 2 * len(of.meshes)
+        case _:
+            rows = len(dimensions(project))
+    return border_solver.rows(rows, head, (6.0, LARGE), (150.0, 190.0))
+
+
+def _shown(project: Project, view: ViewPlace) -> Train:
+    """The train or reducer that a view shows."""
+    train: Train = getattr(project, view.draw.partition(".")[0])
+    return train
+
 
 def scheme(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Axial view, picture of velocities and end view side by side on one main axis, to one scale."""

@@ -347,9 +347,9 @@ def pairs_place(project: Project, view: ViewPlace) -> BorderNode:
 def table_place(project: Project, view: ViewPlace) -> BorderNode:
     """A row for each pair."""
     found = project.study.forces.friction
-    return rows(project, view, len(found.pairs) + 1 if found else 1, 34.0, (5.0, ROWS[0]), (0.7 * view.box.width, inf))
+    return rows(len(found.pairs) + 1 if found else 1, 34.0, (5.0, ROWS[0]), (0.7 * view.box.width, inf))
 
 
 def positions_place(project: Project, view: ViewPlace) -> BorderNode:
     """A row for each position."""
-    return rows(project, view, len(project.cycle.labels) + 1, 12.0, (4.6, ROWS[1]), (0.7 * view.box.width, inf))
+    return rows(len(project.cycle.labels) + 1, 12.0, (4.6, ROWS[1]), (0.7 * view.box.width, inf))

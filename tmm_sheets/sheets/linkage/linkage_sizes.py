@@ -214,7 +214,7 @@ def lever(project: Project, view: ViewPlace) -> BorderNode:
 
 def structure(project: Project, view: ViewPlace) -> BorderNode:
     """A row for each group."""
-    return rows(project, view, len(project.mechanism.groups) + 1, 26.0, (7.0, 7.0), (122.0, 170.0))
+    return rows(len(project.mechanism.groups) + 1, 26.0, (7.0, 7.0), (122.0, 170.0))
 
 
 def motion_table(project: Project, view: ViewPlace) -> BorderNode | None:
@@ -224,7 +224,7 @@ def motion_table(project: Project, view: ViewPlace) -> BorderNode | None:
     bars = [shape.link for shape in link_marks.shapes(project.study.positions)[1:] if shape.bar and view.options.get("links")]
     columns = 1 + 3 * len({*(view.options.get("of") or project.diagrams), *bars})
     count = len(project.cycle.labels) + (2 if view.options.get("links") else 1)
-    return rows(project, view, count, 9.0, (5.6 if count <= 26 else 5.0, 7.0),
+    return rows(count, 9.0, (5.6 if count <= 26 else 5.0, 7.0),
                 (max(100.0, kinematic_frames.COLUMN * columns), 170.0))
 
 
@@ -233,17 +233,17 @@ def velocity_tables(project: Project, view: ViewPlace) -> BorderNode:
     over = 2 if view.options.get("stacked") else 1
     count = over * (len(project.cycle.drawn) + 2)
     wide = 30.0 + kinematic_frames.COLUMN * kinematic_frames.columns(project) / over
-    return rows(project, view, count, 10.0 * over, (5.0, 7.5), (max(min(wide, 320.0), 0.8 * view.box.width), inf))
+    return rows(count, 10.0 * over, (5.0, 7.5), (max(min(wide, 320.0), 0.8 * view.box.width), inf))
 
 
 def results(project: Project, view: ViewPlace) -> BorderNode:
     """Four lines."""
-    return rows(project, view, 4, 0.0, (7.0, 9.0), (128.0, 170.0))
+    return rows(4, 0.0, (7.0, 9.0), (128.0, 170.0))
 
 
 def values(project: Project, view: ViewPlace) -> BorderNode:
     """Tables of points, links and loads."""
-    return rows(project, view, *given_position.extent(project), (5.0, 7.0), (140.0, 200.0))
+    return rows(*given_position.extent(project), (5.0, 7.0), (140.0, 200.0))
 
 
 def synthesis(project: Project, view: ViewPlace) -> BorderNode | None:
