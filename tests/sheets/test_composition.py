@@ -16,12 +16,12 @@ from tmm_sheets.sheets import composition
 from tmm_sheets.sheets.border_solver import (
     SHOWN,
     BorderNode,
+    Figure,
     FigureNode,
     Form,
     Need,
     cut,
     joined,
-    reaching,
     rounded_down,
     rounded_up,
     solve,
@@ -30,8 +30,8 @@ from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.composing import INSIDE
 from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
 from tmm_sheets.sheets.linkage import diagrams, friction, kinematic_frames, kinetic_frames, link_marks
-from tmm_sheets.sheets.linkage.linkage_sizes import OF_FORCE
-from tmm_sheets.sheets.player import fit_frame, once
+from tmm_sheets.sheets.linkage.kinetics import OF_FORCE
+from tmm_sheets.sheets.player import once
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.sheets.views import arrangement
 from tmm_sheets.words import on_paper, paper
@@ -113,7 +113,7 @@ def test_the_position_plans_fill_their_place(name):
     view = next(v for v in arranged(project, 1).views if v.draw == "kinematics.position_plans")
     frame = kinematic_frames.positions(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
     z, d = kinematic_frames.positions_reach(project)
-    left, below, right, above = kinematic_frames.positions_around(project, view.options)
+    left, below, right, above = kinematic_frames.positions_figure(project, view.options).inset
     on_paper = z / frame.scale.mu + d
     drawn = (np.ptp(on_paper.real) + left + right) * (np.ptp(on_paper.imag) + below + above)
     assert drawn > 0.6 * view.box.width * view.box.height
@@ -192,7 +192,7 @@ def test_the_next_larger_scale_would_not_fit(name):
     frame = kinematic_frames.positions(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
     before = max(float(f"{m}e{k}") for m in HANDY for k in range(-6, 1) if float(f"{m}e{k}") < frame.scale.mu * (1 - 1e-9))
     z, d = kinematic_frames.positions_reach(project)
-    left, below, right, above = kinematic_frames.positions_around(project, view.options)
+    left, below, right, above = kinematic_frames.positions_figure(project, view.options).inset
     for mu, fits in ((frame.scale.mu, True), (before, False)):
         on_paper = z / mu + d
         inside = np.ptp(on_paper.real) <= view.box.width - left - right + 1e-9 and \
@@ -343,8 +343,8 @@ def test_a_fixed_point_that_carries_nothing_is_no_part_of_the_mechanism():
 def test_letters_that_take_the_place_ask_for_more_of_it():
     """A link of 0.3 m with 54 mm of arrows and letters about it in 56 mm: 2 mm of it would be drawn."""
     ends, offsets = np.array([0j, 0.3j]), np.array([-27j, 27j])
-    tight, roomy = (reaching(Box(0.0, 0.0, 200.0, high), ends, offsets, (0.0, 20.0, 0.0, 20.0), (60.0, 40.0))
-                    for high in (96.0, 200.0))
+    figure = Figure("", "", "", ends, offsets, (0.0, 20.0, 0.0, 20.0))
+    tight, roomy = (figure.need(Box(0.0, 0.0, 200.0, high), (60.0, 40.0)) for high in (96.0, 200.0))
     assert tight.least[1] == pytest.approx(40.0 + 54.0 + SHOWN)
     assert roomy.least[1] == pytest.approx(tight.least[1])
     assert tight.least[0] == roomy.least[0] == 60.0
@@ -354,12 +354,10 @@ def test_a_scheme_has_room_for_its_forces_along_its_links():
     """The two-armed rocker of 0.39 m with five forces, its upper arm that of a force alone: it stood 26 mm long on the sheet."""
     project = Project(catalogue.read("sixbar/4:5"))
     place = next(v.options["places"][0] for v in arranged(project, 1).views if v.options.get("group") == 2)
-    size, forces = kinetic_frames.crowd(project, project.mechanism.groups[0], project.force_index)
     scheme = kinetic_frames.scheme(project, project.mechanism.groups[0], project.force_index)
-    scales = SimpleNamespace(scales={}, chosen=set())
-    frame = fit_frame(project, scales, "scheme", "", "", *scheme, place.inset(*kinetic_frames.SCHEME))
-    assert forces == 5
-    assert frame.scale.mm(size) > forces * OF_FORCE
+    frame = scheme.frame(project, SimpleNamespace(scales={}, chosen=set()), place)
+    assert scheme.forces == 5
+    assert frame.scale.mm(scheme.size) > scheme.forces * OF_FORCE
 
 
 @pytest.mark.parametrize(("name", "count"), [("pump", 1), ("feeder", 2), ("planer", 3)])

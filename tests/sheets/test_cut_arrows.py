@@ -9,7 +9,6 @@ from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.linkage import kinetic_frames
-from tmm_sheets.sheets.player import fit_frame
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +25,9 @@ def conveyor():
 ])  # fmt: skip
 def test_arrows_are_cut_where_that_makes_the_group_larger(conveyor, wide, high, share):
     g, k = conveyor.mechanism.groups[0], conveyor.force_index
-    assert kinetic_frames.share_of_arrows(conveyor, g, k, Box(0.0, 0.0, wide, high)) == share
+    left, below, right, above = kinetic_frames.SCHEME
+    place = Box(0.0, 0.0, wide + left + right, high + below + above)
+    assert kinetic_frames.share_of_arrows(conveyor, g, k, place) == share
 
 
 def test_cut_arrows_keep_their_directions_and_their_order(conveyor):
@@ -41,11 +42,11 @@ def test_cut_arrows_keep_their_directions_and_their_order(conveyor):
 def test_arrows_are_shortened_for_the_next_finer_scale_factor_of_a_small_group():
     """Whole ones need 0.01026 m/mm of the crusher's place, and the series goes on with 0.015: links of 47 mm instead of 70."""
     project = Project(read("transport/crusher@31-СДМ-246"))
-    group, k, place = project.mechanism.groups[0], project.force_index, Box(0.0, 0.0, 105.0, 110.0)
+    group, k, place = project.mechanism.groups[0], project.force_index, Box(0.0, 0.0, 111.0, 134.0)
     found = kinetic_frames.share_of_arrows(project, group, k, place)
     assert found == kinetic_frames.SHORTER
-    scales = [fit_frame(project, SimpleNamespace(scales={}, chosen=set()), "scheme", "", "",
-                        *kinetic_frames.scheme(project, group, k, share), place).scale.mu for share in (1.0, found)]
+    book = SimpleNamespace(scales={}, chosen=set())
+    scales = [kinetic_frames.scheme(project, group, k, share).frame(project, book, place).scale.mu for share in (1.0, found)]
     assert scales == [0.015, 0.01]
-    assert kinetic_frames.share_of_arrows(project, group, k, Box(0.0, 0.0, 105.0, 150.0)) == 1.0  # nothing is won
+    assert kinetic_frames.share_of_arrows(project, group, k, Box(0.0, 0.0, 111.0, 174.0)) == 1.0  # nothing is won
     assert kinetic_frames.share_of_arrows(project, group, k, Box(0.0, 0.0, 400.0, 400.0)) == 1.0  # it is large

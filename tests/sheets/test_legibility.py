@@ -14,7 +14,7 @@ from tmm_sheets.output import with_room
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import composition
 from tmm_sheets.sheets.composition import arranged
-from tmm_sheets.sheets.linkage.linkage_sizes import each_group
+from tmm_sheets.sheets.linkage.kinetics import each_group
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.sheets.views import ViewPlace
 

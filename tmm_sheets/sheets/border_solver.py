@@ -24,10 +24,11 @@ import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY
-from tmm_sheets.sheets.player import needed
+from tmm_sheets.sheets.player import PlanFrame, ScaleBook, extent, fit_frame, needed
 from tmm_sheets.words import Remark, marked
 
 if TYPE_CHECKING:
+    from tmm_sheets.project import Project
     from tmm_sheets.sheets.views import ViewPlace
 
 GAP = 6.0
@@ -87,6 +88,19 @@ class Need:
     def ending(self, floor: float, largest: tuple[float, float]) -> Need:
         """The same need with the greatest scale factor of the series up to ``floor``, or that which its ``largest`` place takes."""
         return replace(self, coarsest=max(rounded_down(floor), self.needed(*largest)))
+
+    def readable(self, size: float, forces: int, each: float) -> Need:
+        """The same of a figure of such a size, in its unit, that has room along it for so many forces, ``each`` of a length, mm.
+
+        Where only its width and height are measured, arrows round a small figure take the same place as round a large one. What
+        is small beside its own forces and their arms, slider blocks in a slot, is no larger at any factor that has room for these.
+        """
+        if not forces or not size > LINKS * max(self.span):
+            return self
+        mu = rounded_down(size / (each * forces))
+        wide, high = (max(at_least, span / mu + beside)
+                      for at_least, span, beside in zip(self.least, self.span, self.around, strict=True))
+        return replace(self, least=(wide, high))
 
     def needed(self, width: float, height: float) -> float:
         """Scale factor with which the view fits a place of this size, not rounded."""
@@ -392,25 +406,58 @@ def fixed(box: Box) -> BorderNode:
     return leaf(box, Need(least=size, most=size, drawn=mul))
 
 
-def reaching(box: Box, z: Any, d: Any, inset: tuple[float, float, float, float],
-              least: tuple[float, float]) -> Need:
-    """Need of points with what sticks out of each of them on paper, as it is in about the box of the arrangement.
+@dataclass(frozen=True)
+class Figure:
+    """What is drawn to one scale: how much room it needs and which frame it has in a place follow from the same points.
 
-    Where that alone takes nearly all of the box, so much more that ``SHOWN`` is left for what is drawn to scale.
+    ``plan``, ``symbol`` and ``unit`` are those of its scale factor, ``points`` in the unit of the plan, ``offsets`` what reaches
+    from each of them on paper, mm. ``inset`` is the room round it at the left, below, right and above, mm. Its links, of a ``size``
+    in the unit of the plan, have so many ``forces`` along them; ``finest`` is the least scale factor that is of use.
     """
-    z, d = np.ravel(np.asarray(z, dtype=complex)), np.ravel(np.asarray(d, dtype=complex))
-    inside = box.inset(*inset)
-    size, around, finest = [], [], []
-    for x, offset, room, edge in ((z.real, d.real, inside.width, inset[0] + inset[2]),
-                                  (z.imag, d.imag, inside.height, inset[1] + inset[3])):
-        mu = needed(x, offset, max(room, 40.0))
-        drawn = x / mu + offset if mu > 0 else offset
-        last, first = int(np.nanargmax(drawn)), int(np.nanargmin(drawn))  # they stay the outermost ones at about this size
-        size.append(float(x[last] - x[first]) if mu > 0 else 0.0)
-        around.append(edge + float(offset[last] - offset[first]))
-        finest.append(mu)
-    short = [beside + SHOWN if mu == max(finest) > 0 else 0.0 for beside, mu in zip(around, finest, strict=True)]
-    return Need((size[0], size[1]), (around[0], around[1]), (max(least[0], short[0]), max(least[1], short[1])))
+
+    plan: str
+    symbol: str
+    unit: str
+    points: npt.NDArray[np.complex128]
+    offsets: npt.NDArray[np.complex128]
+    inset: tuple[float, float, float, float]
+    size: float = 0.0
+    forces: int = 0
+    finest: float = 0.0
+
+    def frame(self, project: Project, canvas: ScaleBook, box: Box) -> PlanFrame:
+        """Its frame in a place."""
+        return fit_frame(project, canvas, self.plan, self.symbol, self.unit, self.points, self.offsets, box.inset(*self.inset),
+                         self.finest)
+
+    def taken(self, frame: PlanFrame, box: Box) -> Box:
+        """A place down to where the figure in it ends: its points with what reaches from them, and the clearance under them."""
+        return box._replace(y0=max(box.y0, float((frame(self.points) + self.offsets).imag.min()) - self.inset[1]))
+
+    @property
+    def whole(self) -> float:
+        """Size of all its points, in the unit of the plan."""
+        real = extent([self.points])
+        return max(real.width, real.height)
+
+    def need(self, box: Box, least: tuple[float, float], each: float = 0.0) -> Need:
+        """Need of the figure, as it is in about the box of the arrangement; ``each`` force along its links of a length, mm.
+
+        Where what sticks out takes nearly all of the box, so much more that ``SHOWN`` is left for what is drawn to scale.
+        """
+        z, d, inside, (left, below, right, above) = self.points, self.offsets, box.inset(*self.inset), self.inset
+        size, around, finest = [], [], []
+        for x, offset, room, edge in ((z.real, d.real, inside.width, left + right), (z.imag, d.imag, inside.height, below + above)):
+            mu = needed(x, offset, max(room, 40.0))
+            drawn = x / mu + offset if mu > 0 else offset
+            last, first = int(np.nanargmax(drawn)), int(np.nanargmin(drawn))  # they stay the outermost ones at about this size
+            size.append(float(x[last] - x[first]) if mu > 0 else 0.0)
+            around.append(edge + float(offset[last] - offset[first]))
+            finest.append(mu)
+        short = [beside + SHOWN if mu == max(finest) > 0 else 0.0 for beside, mu in zip(around, finest, strict=True)]
+        need = Need((size[0], size[1]), (around[0], around[1]), (max(least[0], short[0]), max(least[1], short[1])),
+                    finest=self.finest)
+        return need.readable(self.size, self.forces, each)
 
 
 LOW = 0.3

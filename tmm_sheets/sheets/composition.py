@@ -26,6 +26,7 @@ from tmm_sheets.sheets.border_solver import (
     LINKS,
     VECTOR,
     BorderNode,
+    Figure,
     Measured,
     cut,
     fixed,
@@ -34,7 +35,6 @@ from tmm_sheets.sheets.border_solver import (
     solve,
 )
 from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
-from tmm_sheets.sheets.player import extent, fit_frame
 from tmm_sheets.sheets.views import Arrangement, ViewKind, ViewPlace, arrangement, function
 from tmm_sheets.words import Remark, marked
 
@@ -426,31 +426,24 @@ def teeth(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
 
 def lever(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
     """The lever among its forces."""
-    k = project.force_index
-    shown = kinetic_frames.on_lever(project, k)
-    points = extent([complex(step.at(k)) for step in project.study.lever.points.values()])
     place = view.options["places"][0] if "places" in view.options else view.box
-    yield from _among_forces(project, Remark(marked("the lever")), max(points.width, points.height), len(shown), "lever",
-                             kinetic_frames.lever_scheme(project, k, shown), place.inset(*kinetic_frames.LEVER))
+    yield from _among_forces(project, Remark(marked("the lever")), kinetic_frames.lever_scheme(project, project.force_index), place)
 
 
 def group(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
     """A loaded group among its forces; none that has no force, or stands in the box as it is written."""
     if "places" in view.options:
         k, g = project.force_index, tuple(reversed(project.mechanism.groups))[int(view.options["group"]) - 1]
-        place = view.options["places"][0].inset(*kinetic_frames.SCHEME)
-        around = kinetic_frames.scheme(project, g, k, kinetic_frames.share_of_arrows(project, g, k, place))
-        what = Remark(marked("group {name}"), {"name": g.lettered})
-        yield from _among_forces(project, what, *kinetic_frames.crowd(project, g, k), f"scheme-{'-'.join(g.links)}", around, place)
+        place = view.options["places"][0]
+        figure = kinetic_frames.scheme(project, g, k, kinetic_frames.share_of_arrows(project, g, k, place))
+        yield from _among_forces(project, Remark(marked("group {name}"), {"name": g.lettered}), figure, place)
 
 
-def _among_forces(project: Project, what: Remark, size: float, count: int, plan: str,
-                  around: tuple[list[complex], list[complex]], place: Box) -> Iterator[Measured]:
-    """A figure of such a size, in its unit, with so many forces, in a place; ``around`` are its points and what reaches from them.
+def _among_forces(project: Project, what: Remark, figure: Figure, place: Box) -> Iterator[Measured]:
+    """A figure with its forces in a place.
 
     What is small beside its own forces and their arms, blocks in a slot or a lever in a dead position, is so at any scale factor.
     """
-    whole = extent([np.asarray(around[0])])
-    if size > LINKS * max(whole.width, whole.height):
-        scale = fit_frame(project, _book(), plan, "", "", *around, place).scale
-        yield Measured(what, float(scale.mm(size)), APART * count, forces=count)
+    if figure.size > LINKS * figure.whole:
+        scale = figure.frame(project, _book(), place).scale
+        yield Measured(what, float(scale.mm(figure.size)), APART * figure.forces, forces=figure.forces)

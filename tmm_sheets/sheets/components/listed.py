@@ -27,6 +27,8 @@ HEIGHTS = ((5.0, 5.0, 12.0), (5.0, 3.5, 10.0), (5.0, 3.5, 7.0), (3.5, 3.5, 7.0))
 """Heights of the letters of a title and of the lines under it, and distances of these, that are tried, mm."""
 APART = 14.0
 """Distance of formulas that stand side by side, mm."""
+COLUMN = 12.5
+"""Width of a column of numbers at all positions, mm, below which the tables lie down: a column for each position."""
 PLACES = ((220.0, LARGE), (180.0, ROW), (150.0, 9.0), (120.0, 7.0))
 """Widths and heights of rows of a table that are tried, mm."""
 

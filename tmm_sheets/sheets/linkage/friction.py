@@ -20,11 +20,11 @@ from tmm_sheets.drawing.lettering import size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, is_zero, number
-from tmm_sheets.sheets.border_solver import BorderNode, leaf, reaching, rows, stepped
+from tmm_sheets.sheets.border_solver import BorderNode, Figure, leaf, rows, stepped
 from tmm_sheets.sheets.components import graphs, listed
 from tmm_sheets.sheets.linkage import diagrams, link_marks
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
-from tmm_sheets.sheets.player import PlanFrame, PlayerStage, fit_frame, play, ratio, stage, standard
+from tmm_sheets.sheets.player import PlanFrame, PlayerStage, play, ratio, stage, standard
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
@@ -81,22 +81,22 @@ def _line(project: Project, index: str) -> Step:
     return of.touches.get(index) or project.study.positions.points[_hinge(of, index)]
 
 
-def scheme(project: Project) -> tuple[list[complex], list[complex]]:
-    """Points of the mechanism at the analysed position, m, and what sticks out of each on paper, mm."""
+def _scheme(project: Project) -> Figure:
+    """The mechanism at the analysed position, and what sticks out of its points."""
     of, k, pos = _friction(project), project.force_index, project.study.positions
     shown = _reactions(project)
     points = [complex(step.at(k)) for step in pos.points.values()]
     ends = [complex(pos.points[_hinge(of, index)].at(k)) for index, *_ in shown]
     reach = [1.3 * ARROW * force / abs(force) if force else 0j for *_, force in shown]
     pivot = complex(pos.points[pos.mechanism.crank.pivot].at(k))
-    return [*points, *points, *ends, pivot, pivot], [
-        *[12 + 12j] * len(points), *[-12 - 14j] * len(points), *reach, (1 + 1j) * DRIVE, (-1 - 1j) * DRIVE]
+    beside = [*[12 + 12j] * len(points), *[-12 - 14j] * len(points), *reach, (1 + 1j) * DRIVE, (-1 - 1j) * DRIVE]
+    return Figure("friction-scheme", "μ_l", tr("m/mm"), np.array([*points, *points, *ends, pivot, pivot]), np.array(beside), AROUND)
 
 
 def mechanism(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The mechanism at the analysed position: circles of friction to scale, in each pair the reaction on its first link."""
     of, k, pos = _friction(project), project.force_index, project.study.positions
-    frame = fit_frame(project, canvas, "friction-scheme", "μ_l", tr("m/mm"), *scheme(project), box.inset(*AROUND))
+    frame = _scheme(project).frame(project, canvas, box)
     canvas.title(box, tr("Reactions with friction (position {label})").format(label=project.cycle.labels[k]), str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
     link_marks.draw_guides(s, pos)
@@ -336,7 +336,7 @@ power = graphs.CycleView(lambda project: tr("Power of friction in the pairs"),
 
 def mechanism_place(project: Project, view: ViewPlace) -> BorderNode:
     """The mechanism with its reactions to scale."""
-    return leaf(view.box, reaching(view.box, *scheme(project), AROUND, (150.0, 90.0)))
+    return leaf(view.box, _scheme(project).need(view.box, (150.0, 90.0)))
 
 
 def pairs_place(project: Project, view: ViewPlace) -> BorderNode:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import chain, product
-from math import ceil
+from math import ceil, inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +18,8 @@ from tmm_sheets.drawing.text_layout import needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import Sizes, decimals_for, fixed, is_zero, number, written
+from tmm_sheets.sheets.border_solver import BorderNode
+from tmm_sheets.sheets.border_solver import rows as rows_needed
 from tmm_sheets.sheets.components import graphs, listed
 from tmm_sheets.sheets.linkage import kinematic_frames, link_marks
 from tmm_sheets.sheets.player import once
@@ -26,6 +28,7 @@ from tmm_sheets.words import marked, tell, tr, tr_in
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Segment, Step
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.views import ViewPlace
 
 ROW, HEAD = 7.0, 8.0
 """Highest row of the tables, and height of the title over one, mm."""
@@ -41,14 +44,19 @@ def _tables(project: Project) -> list[tuple[str, Rows]]:
     return [(title, rows) for title, rows in found if len(rows) > 1]
 
 
-def extent(project: Project) -> tuple[int, float]:
+def _extent(project: Project) -> tuple[int, float]:
     """Rows that the tables have together, and the height of their titles, mm."""
     return sum(len(rows) for _, rows in _tables(project)), HEAD * len(_tables(project))
 
 
+def values_place(project: Project, view: ViewPlace) -> BorderNode:
+    """Tables of points, links and loads."""
+    return rows_needed(*_extent(project), (5.0, 7.0), (140.0, 200.0))
+
+
 def values(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """These tables, one under another."""
-    count, heads = extent(project)
+    count, heads = _extent(project)
     row = min((box.height - heads) / count, ROW)
     if row < 4.0:
         raise CannotBuild(tell("the tables of the given position need more room: {row:.1f} mm for a row").format(row=row),
@@ -63,7 +71,7 @@ def values(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
 
 def values_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the tables can do with, mm."""
-    count, heads = extent(project)
+    count, heads = _extent(project)
     return [(width, heads + row * count) for width, row in ((176.0, 7.0), (160.0, 6.4), (150.0, 5.6), (140.0, 4.6))]
 
 
@@ -253,6 +261,14 @@ LOWEST = 3.9
 """Height of a row, mm, below which letters of 2.5 mm touch its lines."""
 
 
+def velocity_tables_place(project: Project, view: ViewPlace) -> BorderNode:
+    """A row for each drawn position."""
+    over = 2 if view.options.get("stacked") else 1
+    wide = 30.0 + listed.COLUMN * kinematic_frames.columns(project) / over
+    return rows_needed(over * (len(project.cycle.drawn) + 2), 10.0 * over, (5.0, 7.5),
+                       (max(min(wide, 320.0), 0.8 * view.box.width), inf))
+
+
 def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Tables of measured segments and of velocities over all positions (manual 000, tables 3.2 and 3.3)."""
     vel, cycle = project.study.velocities, project.cycle
@@ -274,7 +290,7 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
         varying, constant = [*constant, *varying], []
     lengths = _measured_lengths(project, canvas, varying, [link.removeprefix("ω_") for link, _ in turning])
     width = box.width - 30.0
-    lying = kinematic_frames.COLUMN * (max(len(lengths), len(speeds)) if stacked else len(lengths) + len(speeds)) > width
+    lying = listed.COLUMN * (max(len(lengths), len(speeds)) if stacked else len(lengths) + len(speeds)) > width
     folds = 1 if lying or stacked else table_folds(box, len(cycle.drawn), len(lengths), len(speeds))
     # Tables that lie down have the same columns.
     left, right = _table_places(box, len(speeds) if lying and lengths else len(lengths), len(speeds), stacked=stacked, folds=folds)
@@ -401,6 +417,11 @@ def table_over_positions(project: Project, canvas: Canvas, place: Box, title: st
 
 STRUCTURE = 200.0
 """Width beyond which the table of groups, of five short columns, is not drawn apart, mm: a row is to be read as one."""
+
+
+def structure_place(project: Project, view: ViewPlace) -> BorderNode:
+    """A row for each group."""
+    return rows_needed(len(project.mechanism.groups) + 1, 26.0, (7.0, 7.0), (122.0, 170.0))
 
 
 def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

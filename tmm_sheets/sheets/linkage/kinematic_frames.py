@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from math import inf
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -13,11 +14,12 @@ from numpy.typing import NDArray
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale, coarser, handy, reach
+from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import PlacedFrame, Points
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.sheets.border_solver import LETTERED
+from tmm_sheets.sheets.border_solver import CRANK, LETTERED, SHARE, VECTOR, BorderNode, Figure, Need, leaf, rounded_up
 from tmm_sheets.sheets.linkage import link_marks
-from tmm_sheets.sheets.player import SHORTEST, PlanFrame, ScaleBook, extent, fit_frame, once, pick, raised, together
+from tmm_sheets.sheets.player import SHORTEST, PlanFrame, ScaleBook, extent, once, pick, raised, together
 from tmm_sheets.words import Remark, marked_n, tell, tell_n, tr
 
 if TYPE_CHECKING:
@@ -37,12 +39,22 @@ SMALLEST = 10.0
 """Size from which on the largest of the velocity plans can be read, mm."""
 LONGEST = 100.0
 """Longest vector of a velocity plan that is of use, mm: what room is left is for others."""
+TITLE = 22.0
+"""Height of the title of velocity plans with their scale factor, mm."""
 SPARE = 20.0
 """Largest height between rows of velocity plans beside what they need, mm."""
 SWING_ARROW = 20.0
 """Greatest radius of the arrow of angular velocity behind the pivot of a crank that only swings, without a circle round it, mm."""
 ACCELERATIONS = 9.0, 8.0, 9.0, 24.0
 """Room round the acceleration plan at the left, below, right and above, mm."""
+MAIN = 4
+"""How much more than others the position plans count: the mechanism is what a sheet is about."""
+OF_POINT = 5.0
+"""Length of an acceleration plan that each of its points needs, mm: letters of the points and of the vectors between them."""
+LARGEST = 400.0, 540.0
+"""Sides of a place, mm, beyond which no view of a linkage gets any: what is below its floor even there is so on every sheet."""
+EDGES = 0.1
+"""Part of a place that its edges take, kept clear beside what is drawn: they are counted with it, but are no ink."""
 MOST = 72
 """Most positions of one turn that are drawn: one each 5 degrees."""
 
@@ -87,15 +99,22 @@ def positions(project: Project, canvas: ScaleBook, box: Box, options: dict[str, 
 
     ``graph`` = false leaves the force graph over them out.
     """
-    inside = box.inset(*positions_around(project, options))
-    return fit_frame(project, canvas, "positions", "μ_l", tr("m/mm"), *positions_reach(project), inside)
+    return positions_figure(project, options).frame(project, canvas, box)
 
 
-def positions_around(project: Project, options: dict[str, Any]) -> tuple[float, float, float, float]:
-    """Room round the position plans at the left, below, right and above, mm: title, scale factor, force graph."""
+def positions_place(project: Project, view: ViewPlace) -> BorderNode:
+    """The position plans with all that is drawn about them."""
+    need = positions_figure(project, view.options).need(view.box, (max(110.0, 0.75 * view.box.width), 90.0))
+    need = need.ending(2 * project.mechanism.crank.length / CRANK.least, LARGEST)
+    return leaf(view.box, replace(need, filled=SHARE + EDGES), MAIN)
+
+
+def positions_figure(project: Project, options: dict[str, Any]) -> Figure:
+    """The position plans, round which there is room for title, scale factor and force graph."""
     graph = graph_height(project, options)
     below = bool(graph) and graph_below(project)
-    return 8.0, 4.0 + (graph if below else 0.0), 8.0, 20.0 + (0.0 if below else graph)
+    return Figure("positions", "μ_l", tr("m/mm"), *positions_reach(project),
+                  (8.0, 4.0 + (graph if below else 0.0), 8.0, 20.0 + (0.0 if below else graph)))
 
 
 @once
@@ -297,7 +316,33 @@ class RowChoice:
         return best
 
 
-def velocity_spans(project: Project, options: dict[str, Any]) -> tuple[list[Box], float]:
+def velocities_place(project: Project, view: ViewPlace) -> BorderNode:
+    """All velocity plans, of equal scale."""
+    spans, longest = _velocity_spans(project, view.options)
+    finest, coarsest = longest / LONGEST, longest / VECTOR.least
+    if len(spans) == 1:
+        need = Need((spans[0].width, spans[0].height), (MARGIN, HEAD + TITLE), (80.0, 80.0), finest=finest)
+        return leaf(view.box, need.ending(coarsest, LARGEST))
+
+    in_place = view.known.setdefault("velocities", cache(RowChoice(spans).most_room))
+
+    def scale(width: float, height: float) -> float:
+        found: float = in_place(round(width), round(height) - TITLE)[0]
+        return found
+
+    def drawn(width: float, height: float) -> float:
+        mu = scale(width, height)
+        if not 0 < mu < inf:
+            return 1.0
+        mu = rounded_up(max(mu, finest))
+        return sum([(s.width / mu + MARGIN) * (s.height / mu + HEAD) for s in spans]) + TITLE * width
+
+    # All velocities are measured on them, and all that follows from these.
+    need = Need(least=(120.0, 60.0), drawn=drawn, scale=scale)
+    return leaf(view.box, need.ending(coarsest, LARGEST), 3)
+
+
+def _velocity_spans(project: Project, options: dict[str, Any]) -> tuple[list[Box], float]:
     """Extents of the velocity plans to be drawn and their longest vector, in the unit of the largest of them.
 
     Those too small for their letters, were that as large as is of use, are enlarged; ``only`` = "force": the analysed one.
@@ -315,10 +360,6 @@ def factors_of(frames: Sequence[PlacedFrame], plan: Plan) -> dict[int, float]:
     """Scale factors of a plan by the positions it is drawn at, those it has first."""
     return {plan.labels.index(frame.position) if frame.position else 0: frame.mu[1]
             for frame in reversed(frames) if frame.plan == plan.name and not frame.turn}
-
-
-COLUMN = 12.5
-"""Width of a column, mm, below which the tables lie down: a row for each quantity, a column for each position."""
 
 
 def columns(project: Project) -> int:
@@ -360,6 +401,19 @@ def accelerations(project: Project, canvas: ScaleBook, box: Box, _options: objec
     need = max(real.width / inside.width, real.height / inside.height)
     scale = pick(project, canvas, "accelerations", "μ_a", tr("(m/s²)/mm"), need)
     return PlanFrame(scale, inside.centre - scale.mm(real.centre) + raised(inside, scale.mm(real.height)))
+
+
+def accelerations_place(project: Project, view: ViewPlace) -> BorderNode:
+    """The acceleration plan with room for its letters."""
+    plan, k = project.study.accelerations.plan, project.force_index
+    real = plan_extent(plan, k)
+    left, below, right, above = ACCELERATIONS
+    title = letter(title_of_accelerations(project, k), 5.0).width
+    need = Need((real.width, real.height), (left + right, below + above), (max(88.0, title + 1.0), 80.0))
+    points = sum(step.rule.gives == "point" for step in plan.steps.values())
+    need = need.readable(max(real.width, real.height), points, OF_POINT)
+    size = longest(plan, [k])
+    return leaf(view.box, need.ending(size / VECTOR.least, LARGEST) if size > 0 else need, 0.8)
 
 
 TOGETHER_READ, ABOUT = 12, 12.0

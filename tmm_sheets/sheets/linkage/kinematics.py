@@ -643,15 +643,11 @@ def enlarged_velocities_sizes(project: Project, canvas: Canvas, options: dict[st
         return []
     if drawn >= SMALL and max(kinematic_frames.longest(plan, [i]) / own for i, own in drawn_with.items()) >= VECTOR.least:
         return []
-    around = kinematic_frames.MARGIN, kinematic_frames.HEAD + TITLED
+    around = kinematic_frames.MARGIN, kinematic_frames.HEAD + kinematic_frames.TITLE
     own = VECTOR.least / (kinematic_frames.longest(plan, [k]) / mu)
     longest, fit = max(real.width, real.height), [t for t in ENLARGED if own <= t <= kinematic_frames.LONGEST / drawn]
     return [(max(size * real.width / longest + around[0], 90.0), size * real.height / longest + around[1])
             for size in (t * drawn for t in reversed(fit or ENLARGED[:1]))]
-
-
-TITLED = 22.0
-"""Height of the title of a velocity plan with its scale factor, mm."""
 
 
 def enlarged_velocities(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -659,7 +655,7 @@ def enlarged_velocities(project: Project, canvas: Canvas, box: Box, options: dic
     plan, k, plain = project.study.velocities.plan, project.force_index, canvas.scales["velocities"]
     real = kinematic_frames.plan_extent(plan, k)
     inside = box.inset(kinematic_frames.MARGIN / 2, kinematic_frames.HEAD / 2, kinematic_frames.MARGIN / 2,
-                       TITLED + kinematic_frames.HEAD / 2)
+                       kinematic_frames.TITLE + kinematic_frames.HEAD / 2)
     larger = max(t for t in ENLARGED if t * _need(real, inside) <= plain.mu * (1 + 1e-6))
     scale = Scale(plain.symbol, float(f"{plain.mu / larger:.6g}"), plain.unit)
     said = tr("{scale} (enlarged {times})").format(scale=scale, times=times(larger))

@@ -14,12 +14,14 @@ from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.scale import handy
 from tmm_sheets.construction.step import Segment, symbol
 from tmm_sheets.numbers import is_zero
+from tmm_sheets.sheets.border_solver import Figure
 from tmm_sheets.sheets.linkage import link_marks
 from tmm_sheets.sheets.player import extent, needed, once
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
+    from tmm_sheets.drawing.marks import Points
     from tmm_sheets.mechanism.groups.contexts import ForcePlan, Load
     from tmm_sheets.mechanism.model import Leg, OuterReaction, StructuralGroup
     from tmm_sheets.methods.linkage.forces import Kinetostatics
@@ -175,8 +177,8 @@ def with_arms(project: Project, g: StructuralGroup, shown: Iterable[Shown]) -> l
     return [replace(force, arm=normal) if force.arm in guides else force for force in shown if force.arm not in own]
 
 
-def loaded(points: Iterable[complex], shown: list[Shown], about: complex, more: Iterable[tuple[complex, complex]] = (),
-           armed: Sequence[Shown] | None = None, share: float = 1.0) -> tuple[list[complex], list[complex]]:
+def _loaded(points: Iterable[complex], shown: list[Shown], about: complex, more: Iterable[tuple[complex, complex]] = (),
+            armed: Sequence[Shown] | None = None, share: float = 1.0) -> tuple[Points, Points]:
     """Points with forces and their arms about a point, and what reaches from each on paper, mm; ``more`` are further ones.
 
     ``armed`` are those whose arms are drawn; all without it.
@@ -184,28 +186,22 @@ def loaded(points: Iterable[complex], shown: list[Shown], about: complex, more: 
     every = [(s.at, arrow * (1 + 7.0 / abs(arrow))) for s, arrow in arrows(shown, share)]  # with their labels
     every += [(point, beside) for point in points for beside in (11.0 + 0j, -11.0 + 0j, 8.0j, -11.0j)]  # symbols of pairs
     every += [*((force.foot(about), 0j) for force in (shown if armed is None else armed)), *more]
-    return [z for z, _ in every], [d for _, d in every]
+    z, d = np.array(every, complex).T
+    return z, d
 
 
 @once
-def scheme(project: Project, g: StructuralGroup, k: int, share: float = 1.0) -> tuple[list[complex], list[complex]]:
-    """The same for the loaded scheme of a group, its arrows this ``share`` of their usual length."""
+def scheme(project: Project, g: StructuralGroup, k: int, share: float = 1.0) -> Figure:
+    """The loaded scheme of a group, its arrows this ``share`` of their usual length, and the forces that crowd along its links."""
     pos = project.study.positions
     shown, _ = outer_forces(project, g, k)
     hinges, centres = scheme_points(project, g, [shape for shape in link_marks.shapes(pos) if shape.link in g.links])
     points = [complex(pos.points[name].at(k)) for name in (*hinges, *dict.fromkeys(centres))]
+    links = extent([np.array(points[:len(hinges)])])
     about = complex(pos.place(g.kind.about(g)).at(k))
     free = [(complex(end.at[k]), 0j) for link, ends in link_marks.free_ends(pos).items() if link in g.links for end in ends]
-    return loaded([*points, *(force.at for force in shown)], shown, about, free, with_arms(project, g, shown), share)
-
-
-@once
-def crowd(project: Project, g: StructuralGroup, k: int) -> tuple[float, int]:
-    """Size of a group from hinge to hinge, m, and how many forces crowd along it on its scheme."""
-    pos = project.study.positions
-    hinges, _ = scheme_points(project, g, [shape for shape in link_marks.shapes(pos) if shape.link in g.links])
-    real = extent([complex(pos.points[name].at(k)) for name in hinges])
-    return max(real.width, real.height), len(outer_forces(project, g, k)[0])
+    around = _loaded([*points, *(force.at for force in shown)], shown, about, free, with_arms(project, g, shown), share)
+    return Figure(f"scheme-{'-'.join(g.links)}", "μ_l", tr("m/mm"), *around, SCHEME, max(links.width, links.height), len(shown))
 
 
 @once
@@ -214,17 +210,17 @@ def share_of_arrows(project: Project, g: StructuralGroup, k: int, box: Box) -> f
 
     Whole ones would leave the group nothing of a low place, or cost a small one the next finer scale factor of the series.
     """
-    needs, sizes = {}, {}
+    needs, figure, inside = {}, scheme(project, g, k), box.inset(*SCHEME)
     for share in (1.0, SHORTER, CUT):
-        z, d = (np.asarray(of, complex) for of in scheme(project, g, k, share))
-        needs[share] = max(needed(z.real, d.real, box.width), needed(z.imag, d.imag, box.height))
-        sizes[share] = max(np.ptp(z.real), np.ptp(z.imag))
+        some = scheme(project, g, k, share)
+        needs[share] = max(needed(some.points.real, some.offsets.real, inside.width),
+                           needed(some.points.imag, some.offsets.imag, inside.height))
     if not needs[CUT] > 0:
         return 1.0
-    if sizes[1.0] < LOW * needs[1.0] and needs[1.0] > GAIN * needs[CUT]:
+    if figure.whole < LOW * needs[1.0] and needs[1.0] > GAIN * needs[CUT]:
         return CUT
     whole, finer = handy(needs[1.0]), handy(needs[SHORTER])
-    return SHORTER if crowd(project, g, k)[0] < WANTED * whole and whole > GAIN * finer * (1 - 1e-9) else 1.0
+    return SHORTER if figure.size < WANTED * whole and whole > GAIN * finer * (1 - 1e-9) else 1.0
 
 
 @once
@@ -239,14 +235,15 @@ def on_crank(project: Project, k: int) -> list[Shown]:
                   forces.force_size(k))
 
 
-def crank_scheme(project: Project, k: int, shown: list[Shown]) -> tuple[list[complex], list[complex]]:
-    """Points of the initial link's scheme and what reaches from them, the arrows of rotation with their signs among it."""
-    c, driver, pos = project.mechanism.crank, project.driver, project.study.positions
+def crank_scheme(project: Project, k: int) -> Figure:
+    """The initial link's scheme, the arrows of rotation with their signs about it."""
+    c, driver, pos, shown = project.mechanism.crank, project.driver, project.study.positions, on_crank(project, k)
     pivot, ends = complex(pos.points[c.pivot].at(k)), [complex(pos.points[name].at(k)) for name in link_marks.crank_pins(pos)]
     wheel = [] if driver is None or driver.wheel is None else [pivot + driver.wheel[0] * z for z in (1, -1, 1j, -1j)]
     outermost = [couple_radius(n) for n, couple in couples_of(project, c.link) if hinge_of(project, couple) is None]
     turning = (max(outermost, default=10.0 if driver is not None else 24.0) + 8.0) * clear(pivot, ends, shown)
-    return loaded([pivot, *ends, *(force.at for force in shown), *wheel], shown, pivot, [(pivot, turning)])
+    around = _loaded([pivot, *ends, *(force.at for force in shown), *wheel], shown, pivot, [(pivot, turning)])
+    return Figure("scheme-crank", "μ_l", tr("m/mm"), *around, CRANK, finest=max(abs(end - pivot) for end in ends) / LONGEST_CRANK)
 
 
 @once
@@ -282,13 +279,15 @@ def turned_vectors(lv: Lever) -> list[Segment]:
     return [seg for seg in vel.plan.segments if seg.tail not in under and seg.head not in under]
 
 
-def lever_scheme(project: Project, k: int, shown: list[Shown]) -> tuple[list[complex], list[complex]]:
-    """Points of the lever with the forces on it, and what reaches from them."""
-    lv = project.study.lever
+def lever_scheme(project: Project, k: int) -> Figure:
+    """The lever with the forces on it."""
+    lv, shown = project.study.lever, on_lever(project, k)
     points = [complex(step.at(k)) for step in lv.points.values()]
     # The velocity plan itself, turned: also what no force hangs on.
     turned = [1j * complex(step.at(k)) for seg in turned_vectors(lv) for step in (seg.tail, seg.head)]
-    return loaded([0j, *points], shown, 0j, [*((force.at, 0j) for force in shown), *((z, 0j) for z in turned)])
+    around = _loaded([0j, *points], shown, 0j, [*((force.at, 0j) for force in shown), *((z, 0j) for z in turned)])
+    size = extent([np.array(points)])
+    return Figure("lever", "μ_V", tr("(m/s)/mm"), *around, LEVER, max(size.width, size.height), len(shown))
 
 
 def couples_of(project: Project, link: str) -> Iterator[tuple[int, Couple]]:
@@ -340,13 +339,6 @@ LONGEST_CRANK = 120.0
 def finest(fp: ForcePlan, k: int) -> float:
     """Scale factor of a force plan, N/mm, at which its longest side is as long as is of use."""
     return max((abs(complex(head.at(k)) - complex(tail.at(k))) for _, tail, head, _ in fp.sides), default=0.0) / LONGEST
-
-
-def finest_crank(project: Project) -> float:
-    """Scale factor of the initial link's scheme, m/mm, at which its longest arm is as long as is of use."""
-    k, pos = project.force_index, project.study.positions
-    pivot = complex(pos.points[project.mechanism.crank.pivot].at(k))
-    return max(abs(complex(pos.points[name].at(k)) - pivot) for name in link_marks.crank_pins(pos)) / LONGEST_CRANK
 
 
 def acting_sides(fp: ForcePlan, k: int, force_size: float) -> list[tuple[str, Step, Step, bool]]:

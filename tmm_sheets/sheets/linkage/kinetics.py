@@ -18,14 +18,12 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_layout import TOGETHER, wrapped
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, decimals_for, fixed, is_zero, number
-from tmm_sheets.sheets.border_solver import UNDER
+from tmm_sheets.sheets import border_solver
+from tmm_sheets.sheets.border_solver import UNDER, BorderNode, Figure, Need, leaf
 from tmm_sheets.sheets.components import flat_crossings, listed
-from tmm_sheets.sheets.linkage import link_marks, linkage_sizes, moments
+from tmm_sheets.sheets.linkage import link_marks, moments
 from tmm_sheets.sheets.linkage.kinetic_frames import (
     AROUND,
-    CRANK,
-    LEVER,
-    SCHEME,
     Couple,
     Shown,
     acting_sides,
@@ -37,7 +35,6 @@ from tmm_sheets.sheets.linkage.kinetic_frames import (
     couples_of,
     crank_scheme,
     finest,
-    finest_crank,
     flat,
     hinge_of,
     lever_scheme,
@@ -75,9 +72,83 @@ LINE, LINES = 6.25, 3
 """Distance of the lines of that equation and of the values under it, mm, and how many there is always room for."""
 
 
+OF_FORCE, ON_LEVER = 6.0, 5.0
+"""Length of a group's links, and of Zhukovsky's lever, that each force on it needs, mm: those of the lever stand all round."""
+OF_VALUE = 24.0
+"""Room of one force with its value in the line under a force plan, mm, about."""
+
+
+def each_group(project: Project, view: ViewPlace) -> list[ViewPlace]:
+    """Every group of the mechanism in an equal part of a place, the farthest first: down each of the ``columns`` in turn."""
+    box, count, columns = view.box, len(project.mechanism.groups), int(view.options.get("columns", 1))
+    rows = -(-count // max(columns, 1))
+    wide, high = box.width / columns, box.height / max(rows, 1)
+    return [ViewPlace("kinetics.group", Box(x, y - high, x + wide, y), {"scheme": 0.45, "group": i})
+            for i, (x, y) in enumerate([(box.x0 + (i // rows) * wide, box.y1 - (i % rows) * high) for i in range(count)], 1)]
+
+
+def group_place(project: Project, view: ViewPlace) -> BorderNode:
+    """Loaded scheme and force plans: side by side, or the plans one under another, or the scheme over them: what fills most."""
+    nth = int(view.options.get("group", 1))
+    if not 1 <= nth <= len(project.mechanism.groups):
+        return border_solver.fixed(view.box)
+    g = tuple(reversed(project.mechanism.groups))[nth - 1]
+    return _place(project, view, scheme(project, g, project.force_index), (92.0, 64.0), (moments.of_group, g),
+                  g.kind.force_plans(g), float(view.options.get("scheme", 0.45)), OF_FORCE)
+
+
+def crank_place(project: Project, view: ViewPlace) -> BorderNode:
+    """The crank with its force plan."""
+    return _place(project, view, crank_scheme(project, project.force_index), (76.0, 73.0), (moments.of_crank,),
+                  [project.mechanism.crank.link], float(view.options.get("scheme", 0.5)))
+
+
+def lever_place(project: Project, view: ViewPlace) -> BorderNode:
+    """Zhukovsky's lever: every force and its arm hangs on it, no view has more labels."""
+    return _place(project, view, lever_scheme(project, project.force_index), (112.0, 100.0), (moments.of_lever,), each=ON_LEVER,
+                  weight=3.0)
+
+
+def results_place(project: Project, view: ViewPlace) -> BorderNode:
+    """Four lines."""
+    return border_solver.rows(4, 0.0, (7.0, 9.0), (128.0, 170.0))
+
+
+def _place(project: Project, view: ViewPlace, figure: Figure, least: tuple[float, float], texts: Sequence[Any],
+           plans: Iterable[str] = (), share: float = 1.0, each: float = 0.0, weight: float = 1.0) -> BorderNode:
+    """A figure with its equations under it and its plans beside it or under both, as costs least.
+
+    ``texts`` are the function of the equations and what it asks for, ``each`` the room of a force along its links.
+    """
+    under, box, k = moments.room(project, *texts), view.box, project.force_index
+    left = box._replace(y0=min(box.y0 + under[0].height, box.centre.imag)) if under else box  # half of it at least
+    own = border_solver.over(leaf(box, figure.need(left, least, each), share * weight), under)
+    needs = [_force_plan_need(fp, k) for fp in loaded_plans(project, plans)]
+    if not needs:
+        return own
+    of_plans = [leaf(box, need, (1.0 - share) / len(needs)) for need in needs]
+    found = [border_solver.joined(axis, [own, border_solver.joined(inner, of_plans, [1.0] * len(needs), 4.0)], [share, 1.0 - share],
+                                  4.0)
+             for axis, inner in ((0, 1), (0, 0), (1, 0))[::3 - min(len(needs), 2)]]
+    for tree in found:
+        for _ in range(2):
+            tree.settle(box.width, box.height, (16.0, 8.0, 4.0))
+    return min(found, key=lambda tree: round(tree.cost(box.width, box.height), 3))
+
+
+def _force_plan_need(fp: ForcePlan, k: int) -> Need:
+    real = polygon(fp, k)[1]
+    left, below, right, above = AROUND
+    parts = terms(fp.sides)
+    half = " + ".join(parts[:(len(parts) + 1) // 2]) + " +"
+    asked = sum(side[3] for side in fp.sides) + sum(not any(seg.symbol == side[0] for side in fp.sides) for seg in fp.plan.segments)
+    wide = max(78.0, letter(half, 2.5).width + 8.0, OF_VALUE * asked + 6.0)
+    return Need((real.width, real.height), (left + right, below + above), (wide, 56.0), finest=finest(fp, k))
+
+
 def groups(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """All Assur groups of a mechanism, the farthest on top, in equal parts of a place that is as it is written."""
-    for view in linkage_sizes.each_group(project, ViewPlace("kinetics.groups", box, options)):
+    for view in each_group(project, ViewPlace("kinetics.groups", box, options)):
         group(project, canvas, view.box, view.options)
 
 
@@ -90,7 +161,7 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
                           tell("take an arrangement with the view kinetics.groups, or leave kinetics.group out of it"))
     g = tuple(reversed(m.groups))[nth - 1]
     plans = loaded_plans(project, g.kind.force_plans(g))
-    left, *places = options.get("places") or linkage_sizes.group(project, ViewPlace("kinetics.group", box, options)).parts(box)
+    left, *places = options.get("places") or group_place(project, ViewPlace("kinetics.group", box, options)).parts(box)
     _scheme(project, canvas, left, places.pop(0) if moments.of_group(project, g) else None, g, k)
     for line in (*jumps(project, g.links), *([] if plans else [tr("There are no forces in this position")])):
         canvas.note(left, line)
@@ -118,9 +189,9 @@ def _scheme(project: Project, canvas: Canvas, box: Box, under: Box | None, g: St
     hinges, centres = scheme_points(project, g, drawn)
     points = [pos.points[name] for name in (*hinges, *dict.fromkeys(centres))]
     about = complex(pos.place(g.kind.about(g)).at(k))
-    share = share_of_arrows(project, g, k, box.inset(*SCHEME))
-    around = scheme(project, g, k, share)
-    frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", tr("m/mm"), *around, box.inset(*SCHEME))
+    share = share_of_arrows(project, g, k, box)
+    figure = scheme(project, g, k, share)
+    frame = figure.frame(project, canvas, box)
     canvas.of = f"group {g.name}"
     title = tr("Assur group {name} (kind {number})") if g.kind.grade == 2 else tr("Assur group {name} (class III, order 3)")
     canvas.title(box, title.format(name=g.lettered, number=g.kind.number), str(frame.scale))
@@ -142,12 +213,7 @@ def _scheme(project: Project, canvas: Canvas, box: Box, under: Box | None, g: St
     for c in couples:
         _turning(s, frame(c.at), 10.0, -1 - 0.4j, c)
     _link_couples(project, s, drawn)
-    _equations(canvas, _taken(box, frame, around, SCHEME), under, moments.of_group(project, g))
-
-
-def _taken(box: Box, frame: PlanFrame, around: tuple[list[complex], list[complex]], inset: tuple[float, ...]) -> Box:
-    """A place down to where a figure in it ends: its points with what reaches from them, and the clearance under them."""
-    return box._replace(y0=max(box.y0, min((frame(z) + d).imag for z, d in zip(*around, strict=True)) - inset[1]))
+    _equations(canvas, figure.taken(frame, box), under, moments.of_group(project, g))
 
 
 def _equations(canvas: Canvas, box: Box, under: Box | None, texts: Iterable[list[str]], of: str = "moments") -> None:
@@ -349,16 +415,15 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     k, study, c, driver = project.force_index, project.study, project.mechanism.crank, project.driver
     forces, pos = study.forces, study.positions
     plans = loaded_plans(project, [c.link])
-    left, *places = options.get("places") or linkage_sizes.crank(project, ViewPlace("kinetics.crank", box, options)).parts(box)
+    left, *places = options.get("places") or crank_place(project, ViewPlace("kinetics.crank", box, options)).parts(box)
     texts = moments.of_crank(project)
     under = places.pop(0) if texts else None
     centre, pins = pos.points[c.pivot], [pos.points[name] for name in link_marks.crank_pins(pos)]
     pivot, ends = complex(centre.at(k)), [complex(pin.at(k)) for pin in pins]
     shown = on_crank(project, k)
     away = clear(pivot, ends, shown)
-    around = crank_scheme(project, k, shown)
-    frame = fit_frame(project, canvas, "scheme-crank", "μ_l", tr("m/mm"), *around, left.inset(*CRANK),
-                      finest_crank(project))
+    figure = crank_scheme(project, k)
+    frame = figure.frame(project, canvas, left)
     canvas.title(left, tr("Input link"), str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
     # Pitch circle of the wheel on the shaft, and its pitch point.
@@ -378,7 +443,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     for line in (*jumps(project, [c.link]), *([] if plans else [tr("There are no forces in this position")])):
         canvas.note(left, line)
     said = "; ".join(_crank_couples(project, s, s.at(centre), away))
-    low = _taken(left, frame, around, CRANK)
+    low = figure.taken(frame, left)
     _equations(canvas, low, under, texts)
     if not texts:
         canvas.text(complex(low.centre.real, low.y0), said, size_for([said], low.width - 4.0, 3.5), "centre")
@@ -401,9 +466,9 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     """Zhukovsky's lever: the velocity plan turned by 90 degrees with every force and its arm."""
     k, lv = project.force_index, project.study.lever
     shown = on_lever(project, k)
-    box, *under = options.get("places") or linkage_sizes.lever(project, ViewPlace("kinetics.lever", box, options)).parts(box)
-    around = lever_scheme(project, k, shown)
-    frame = fit_frame(project, canvas, "lever", "μ_V", tr("(m/s)/mm"), *around, box.inset(*LEVER))
+    box, *under = options.get("places") or lever_place(project, ViewPlace("kinetics.lever", box, options)).parts(box)
+    figure = lever_scheme(project, k)
+    frame = figure.frame(project, canvas, box)
     plain: Scale | None = canvas.scales.get("velocities")
     text = str(frame.scale)
     ratio = plain.mu / frame.scale.mu if plain is not None else 1.0
@@ -425,7 +490,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         s.letters(lv.contact, lv.contact.name, gap=1.2)
     draw_arms(s, 0j, shown, points=[complex(s.at(step)) for step in lv.points.values()])
     draw_forces(s, shown)
-    _equations(canvas, _taken(box, frame, around, LEVER), next(iter(under), None), moments.at_scale(project, frame.scale),
+    _equations(canvas, figure.taken(frame, box), next(iter(under), None), moments.at_scale(project, frame.scale),
                "moments of the lever")
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from cmath import phase, rect
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import islice
 from math import asin, atan2, cos, pi, sin, sqrt
 from typing import TYPE_CHECKING, Any, cast
 
@@ -17,7 +18,8 @@ import numpy as np
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import Box, Points
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.sheets.border_solver import BorderNode, Figure, fixed, leaf
 from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.linkage import link_marks
 from tmm_sheets.sheets.player import PlanFrame, PlayerStage, fit_frame, play, stage
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from tmm_sheets.mechanism.groups.triad import TriadGroup
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.views import ViewPlace
 
 def figure(project: Project, canvas: Canvas, box: Box) -> None:
     """The mechanism where the pin enters its slot; the locking disc leaves the cross there."""
@@ -91,6 +94,11 @@ def _crank(pen: Canvas, ends: tuple[complex, complex], lock: float, half: float,
 
 LINE = 7.0
 """Distance of the lines of formulas, mm."""
+
+
+def place(project: Project, view: ViewPlace) -> BorderNode | None:
+    """The given sizes and what is found from them."""
+    return fixed(view.box) if project.variant.synthesis is not None else None
 
 
 def sizes(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -195,15 +203,24 @@ def triads(project: Project) -> list[TriadGroup]:
     return [cast("TriadGroup", g) for g in project.mechanism.groups if g.kind.grade == 3]
 
 
+def _triad(project: Project, options: dict[str, Any]) -> TriadGroup | None:
+    """The one that a view shows: option ``group`` counts those of class III from 1."""
+    return next(islice(triads(project), int(options.get("group", 1)) - 1, None), None)
+
+
+def group_place(project: Project, view: ViewPlace) -> BorderNode | None:
+    """A group of class III by false positions."""
+    g = _triad(project, view.options)
+    return None if g is None else leaf(view.box, _figure(project, g).need(view.box, (110.0, 90.0)))
+
+
 def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """False positions of a group of class III at the position of the force analysis; ``group`` counts those of class III from 1."""
-    found = triads(project)
-    nth = int(options.get("group", 1))
-    if nth > len(found):
+    if (g := _triad(project, options)) is None:
         return
-    g, pos, k = found[nth - 1], project.study.positions, project.force_index
+    pos, k = project.study.positions, project.force_index
     special = pos.special[g.kind.about(g)]
-    frame = fit_frame(project, canvas, f"false-positions-{g.name}", "μ_l", tr("m/mm"), *reach(project, g), box.inset(*AROUND))
+    frame = _figure(project, g).frame(project, canvas, box)
     canvas.title(box, tr("False positions of group {name} (position {label})").format(
         name=g.name, label=project.cycle.labels[k]), str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
@@ -266,8 +283,8 @@ def _size(pos: Positions, g: TriadGroup, k: int) -> float:
     return float(np.abs(z - z.mean()).max())
 
 
-def reach(project: Project, g: TriadGroup) -> tuple[Points, Points]:
-    """Points of the view, m, and what sticks out of them on paper, mm."""
+def _figure(project: Project, g: TriadGroup) -> Figure:
+    """Points of the view and what sticks out of them."""
     pos, k = project.study.positions, project.force_index
     special = pos.special[g.kind.about(g)].step
     z = [complex(step.at(k)) for step in _points(pos, g)]
@@ -275,4 +292,4 @@ def reach(project: Project, g: TriadGroup) -> tuple[Points, Points]:
         z.append(complex(special.at(k)))
     z += [complex(step.at(k)) for steps in g.false_points(pos.false[g.name]) for step in steps if step.rule.gives == "point"]
     around = (10.0, -10.0, 8.0j, -10.0j)
-    return np.repeat(z, len(around)), np.tile(around, len(z))
+    return Figure(f"false-positions-{g.name}", "μ_l", tr("m/mm"), np.repeat(z, len(around)), np.tile(around, len(z)), AROUND)
