@@ -189,9 +189,8 @@ VIEWS = {view.draw: view for view in (
     ViewKind("gear_equations.of_pair", "gear", sizes="gear_equations.of_pair.sizes"),
     ViewKind("rack.generating", "gear", place="rack.place"),
     # reducers
-    ViewKind("plan_checks.mobility", "reducer", by="train.reducer_mobility", sizes="train.reducer_mobility.sizes",
-             stands="anywhere"),
-    ViewKind("plan_checks.of_reducer", "reducer", sizes="plan_checks.of_reducer.sizes", stands="anywhere"),
+    ViewKind("plan_checks.mobility", "reducer", by="train.mobility", sizes="train.mobility.sizes", stands="anywhere"),
+    ViewKind("plan_checks.of_reducer", "reducer", by="train.by_plan", sizes="train.by_plan.sizes", stands="anywhere"),
     ViewKind("reducer.choice", "reducer", place="train.table_place"),
     ViewKind("reducer.conditions", "reducer", place="train.table_place"),
     ViewKind("reducer.links", "reducer", by="train.links", sizes="train.links.sizes"),
@@ -200,7 +199,7 @@ VIEWS = {view.draw: view for view in (
     ViewKind("reducer.speeds", "reducer", by="train.speeds", place="train.speeds_place"),
     ViewKind("reducer.of_stage", "reducer", sizes="reducer.of_stage.sizes"),
     # gear trains
-    ViewKind("plan_checks.of_train", "train", sizes="plan_checks.of_train.sizes", stands="anywhere"),
+    ViewKind("plan_checks.of_train", "train", by="train.by_plan", sizes="train.by_plan.sizes", stands="anywhere"),
     ViewKind("plan_checks.pairs", "train", sizes="plan_checks.pairs.sizes", stands="anywhere"),
     ViewKind("train.links", "train", sizes="train.links.sizes"),
     ViewKind("train.mobility", "train", sizes="train.mobility.sizes"),

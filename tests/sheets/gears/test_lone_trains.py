@@ -155,3 +155,12 @@ def test_stages_alike_have_one_end_view():
 def test_shafts_that_lead_in_and_out_are_marked(own, signs):
     opened = own()
     assert [*TrainScheme(opened.train if "train" in opened.parts else opened.reducer).leading()] == signs
+
+
+def test_a_reducer_beside_a_train_has_its_own_plan_and_tables():
+    """Its sheet asked for the plan of the train's speeds, which stands on another sheet."""
+    own = project({**PROJECTS["sun drives"], **PROJECTS["shafts"], "project.sheets": ["train", "reducer"]})
+    alone = project(PROJECTS["sun drives"])
+    texts = [{m.text for m in composed(one, n).drawing.marks if isinstance(m, Text) and m.of != "title block"}
+             for one, n in ((own, 2), (alone, 1))]
+    assert texts[0] == texts[1]

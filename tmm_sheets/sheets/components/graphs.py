@@ -363,16 +363,6 @@ def _fitted(project: Project, column: Column, room: float) -> list[float]:
     return mus
 
 
-def low(project: Project, columns: Sequence[Column], box: Box) -> Iterator[Measured]:
-    """How high the graphs of columns come out in a place; none whose scale factors the project file asks for."""
-    places = [place for place in (placed(project, columns, box) if columns else ())
-              if place.quantity.span and place.quantity.key not in project.variant.scales]
-    hint = marked("name fewer outputs in diagrams of [cycle]") if len(places) > 3 else marked("number fewer positions")
-    for q, _, mu in places:
-        yield Measured(Remark(marked("the graph of {quantity}"), {"quantity": re.sub("[_{}]", "", q.letter)}), q.extent / mu,
-                       q.floor, hint)
-
-
 @dataclass(frozen=True)
 class CycleView:
     """A view of ``columns`` of graphs under a ``title``, none for nothing to show.
@@ -402,7 +392,13 @@ class CycleView:
 
     def low(self, project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
         """How high the graphs come out in a place; none whose scale factors the project file asks for."""
-        return low(project, self.columns(project, view.options), view.box)
+        columns = self.columns(project, view.options)
+        places = [place for place in (placed(project, columns, view.box) if columns else ())
+                  if place.quantity.span and place.quantity.key not in project.variant.scales]
+        hint = marked("name fewer outputs in diagrams of [cycle]") if len(places) > 3 else marked("number fewer positions")
+        for q, _, mu in places:
+            yield Measured(Remark(marked("the graph of {quantity}"), {"quantity": re.sub("[_{}]", "", q.letter)}), q.extent / mu,
+                           q.floor, hint)
 
     def __call__(self, project: Project, canvas: Canvas, box: Box, options: Options) -> None:
         """Draw them."""

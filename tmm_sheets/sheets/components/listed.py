@@ -132,7 +132,7 @@ def _sized(project: Project, view: Formulas) -> list[tuple[tuple[float, float], 
 class Table:
     """A view of ``rows``, the first of them the heading, under a ``title``; columns have these ``shares`` of the width."""
 
-    title: str | Callable[[Project], str]
+    title: str | Callable[[Project, Canvas], str]
     rows: Callable[[Project, Canvas], list[list[str]]]
     shares: tuple[float, ...]
     places: tuple[tuple[float, float], ...] = PLACES
@@ -145,7 +145,7 @@ class Table:
     def __call__(self, project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
         """Draw it."""
         rows, widths = self.rows(project, canvas), [share * box.width for share in self.shares]
-        left = canvas.title(box, tr(self.title) if isinstance(self.title, str) else self.title(project),
+        left = canvas.title(box, tr(self.title) if isinstance(self.title, str) else self.title(project, canvas),
                             spare=box.height - 11.0 - self.places[-1][1] * len(rows))
         row, height = letters_in(left.height / len(rows), widths, rows)
         canvas.table(complex(box.x0, left.y1), widened(widths, rows, height), rows, row, height)

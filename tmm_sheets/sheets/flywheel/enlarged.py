@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import floor, log10
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.views import Arrangement
 
-Options = dict[str, Any]
 LEFT, RIGHT, BELOW, ABOVE = 22.0, 14.0, 9.0, 12.0
 """Room beside the axes for their signs and numbers, mm."""
 TITLE = 18.0
@@ -65,7 +64,7 @@ def apart(project: Project, plan: Arrangement) -> Arrangement:
     return replace(plan, views=tuple(moved.get(view.draw, view) for view in plan.views if wanted or view is not own))
 
 
-def change_sizes(project: Project, canvas: Canvas, options: Options) -> tuple[tuple[float, float], ...]:
+def change_sizes(project: Project, canvas: Canvas, options: graphs.Options) -> tuple[tuple[float, float], ...]:
     """Sizes of the graph of dE by Mertsalov's procedure, which shares its axis with the energies of the links, mm.
 
     None where that of the construction is high enough.
@@ -78,7 +77,7 @@ def change_sizes(project: Project, canvas: Canvas, options: Options) -> tuple[tu
     return tuple((share * across + LEFT + RIGHT, high + TITLE + ABOVE + BELOW) for share in SHARES) if high else ()
 
 
-def change(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def change(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """The change of kinetic energy over the turn of the crank, alone and enlarged."""
     fw = mertsalov.procedure(project)
     name = tr(options.get("energies", mertsalov.ENERGIES)[0])
@@ -112,7 +111,7 @@ def larger(fw: Wittenbauer) -> tuple[Scale, Scale, float]:
     return x, y, first
 
 
-def energy_mass_sizes(project: Project, canvas: Canvas, options: Options) -> tuple[tuple[float, float], ...]:
+def energy_mass_sizes(project: Project, canvas: Canvas, options: graphs.Options) -> tuple[tuple[float, float], ...]:
     """Sizes of the energy-mass diagram beside which the segment ab is long or the inertia large, mm; none where neither is."""
     fw = project.flywheel
     if fw.method != "wittenbauer":
@@ -125,7 +124,7 @@ def energy_mass_sizes(project: Project, canvas: Canvas, options: Options) -> tup
     return tuple((share * across + LEFT + RIGHT, high + TITLE + ABOVE + BELOW) for share in SHARES)
 
 
-def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def energy_mass(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """The curve with its points and the tangents where they touch it; what they cut off is measured on the diagram itself."""
     fw = flywheel.with_tangents(project)
     plan, curve, (x, y, first) = fw.energy_mass_plan, fw.energy_mass_curve(fw.samples), larger(fw)
@@ -169,7 +168,7 @@ def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) ->
 CRANK_SPEED = ((260.0, 120.0), (220.0, 105.0), (180.0, 105.0), (150.0, 105.0))
 
 
-def graph_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[tuple[float, float], ...]:
+def graph_sizes(project: Project, canvas: Canvas, options: graphs.Options) -> tuple[tuple[float, float], ...]:
     """Sizes from that of the sheet's other graphs down; none where no tangents are drawn or no flywheel is needed."""
     fw = project.flywheel
     if fw.method != "wittenbauer" or not fw.needed:
@@ -178,12 +177,12 @@ def graph_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> tu
     return (*((as_others, high) for high in (145.0, 120.0, 105.0)), *(size for size in CRANK_SPEED if size[0] < as_others))
 
 
-def graph_left(options: dict[str, Any]) -> float:
+def graph_left(options: graphs.Options) -> float:
     """Left edge, mm, with which its axis stands under those of the other graphs."""
     return float(options["axis"]) - LEFT
 
 
-def graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def graph(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Differences from the mean angular velocity over the turn of the crank, with the bounds at the tangents."""
     fw = flywheel.with_tangents(project)
     if not fw.needed:

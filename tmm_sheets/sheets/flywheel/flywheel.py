@@ -13,7 +13,7 @@ from dataclasses import replace
 from itertools import pairwise
 from math import degrees, pi
 from string import ascii_lowercase
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -42,7 +42,6 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.views import Arrangement, ViewPlace
 
-Options = dict[str, Any]
 CLEAR = 14.0
 """How far the sign of a straight graph stands from the other curve, mm."""
 CROWD = 4
@@ -59,7 +58,7 @@ Stacked = tuple[Callable[..., None], float, float]
 """A graph of a column: what draws it, the height of its ordinates and what it needs under them, mm."""
 
 
-def column(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def column(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Forces, moments and works one under another."""
     stacked(project, canvas, box, options, "flywheel.column", _of_column(project.flywheel), apart=True)
 
@@ -119,7 +118,7 @@ def of_moments(fw: Flywheel) -> tuple[Stacked, Stacked]:
     return (moments, float(np.ptp(fw.scales.moment.mm(moment))) + 6.0, 4.0), (works, float(np.ptp(work)), 4.0)
 
 
-def stacked(project: Project, canvas: Canvas, box: Box, options: Options, name: str, views: Sequence[Stacked],
+def stacked(project: Project, canvas: Canvas, box: Box, options: graphs.Options, name: str, views: Sequence[Stacked],
             apart: bool = False) -> None:
     """Graphs one under another, each as high as it is, the room left over between them; ``apart`` each is a view of its own."""
     over = graphs.OVER + graphs.HEAD
@@ -138,7 +137,7 @@ def stacked(project: Project, canvas: Canvas, box: Box, options: Options, name: 
         top = low - spare
 
 
-def force_graph(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def force_graph(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Technological forces over the crank angle; where one begins or ends the moment graph is cut off."""
     fw = with_tangents(project)  # the first view of its sheets: what is said of another method comes before what lacks room
     s, r = fw.scales, fw.reduced
@@ -190,7 +189,7 @@ def _acting(fw: Flywheel, name: str) -> list[Points]:
     return [np.concatenate(parts) for parts in runs]
 
 
-def moments(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def moments(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Reduced moments with the pole, the ordinates in the middles of the intervals, their rays and the constant moment."""
     fw: Flywheel = project.flywheel
     s, r, plan = fw.scales, fw.reduced, fw.work_plan
@@ -304,7 +303,7 @@ PARTED = 3.5
 """Distance of points of an axis from which on a number stands between them, mm."""
 
 
-def works(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def works(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Work of the varying moment by chords parallel to the rays, and the straight line that balances the cycle."""
     fw: Flywheel = project.flywheel
     s = fw.scales
@@ -340,7 +339,7 @@ def works(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     drive.letters("K", "K", 1j if end.imag > 0 else -1j)
 
 
-def total_work(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def total_work(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Sum of the works, which is the change of kinetic energy, at the scale of the energy-mass diagram."""
     fw = with_tangents(project)
     s = fw.scales
@@ -365,7 +364,7 @@ def _enlarged(ratio: float) -> str:
     return said.format(times=times(max(ratio, 1 / ratio)))
 
 
-def inertia(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def inertia(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Reduced moment of inertia, turned clockwise: its J axis runs as that of the energy-mass diagram, phi downwards."""
     fw: Flywheel = project.flywheel
     s = fw.scales
@@ -394,7 +393,7 @@ def inertia(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
     canvas.text(g(1j * reach) - 2 + 2j, tr("J^red, kg·m^2"), 3.5, "right")
 
 
-def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def energy_mass(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Energy-mass curve by projection from the graphs of dE and J, its two tangents and the segment ab."""
     fw = with_tangents(project)
     s, plan = fw.scales, fw.energy_mass_plan
@@ -490,7 +489,7 @@ def _beneath(canvas: Canvas, gap: Box, height: float, *said: object) -> Box:
     return Box(gap.x0, gap.y0, gap.x1, gap.y1 - len(lines) * 1.6 * height - 1.0)
 
 
-def wheel(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def wheel(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Sketch of the wheel to a standard scale: front view and section through the axis, with dimensions in mm.
 
     Words in its place when no flywheel is needed, or of a given one nothing but its moment of inertia is known.
@@ -585,7 +584,7 @@ def disagreement(fw: Flywheel) -> list[str]:
             tr("|J_f| is less than the error of the construction {error} kg·m^2").format(error=error)]
 
 
-def inertia_table(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def inertia_table(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Table of the terms of the reduced moment of inertia at the positions."""
     fw: Flywheel = project.flywheel
     # A square over an index; terms without a unit are doubled energies. The position that closes the cycle may be left out.
@@ -597,7 +596,7 @@ def inertia_table(project: Project, canvas: Canvas, box: Box, options: Options) 
         graphs.row(tr("J^red, kg·m^2"), fw.J_reduced)])
 
 
-def _works(project: Project, options: Options) -> tuple[str, list[list[str]]]:
+def _works(project: Project, options: graphs.Options) -> tuple[str, list[list[str]]]:
     """Moment, works and change of energy at the positions, the units under the names."""
     fw: Flywheel = project.flywheel
     varying, constant = indices(fw)
@@ -616,7 +615,7 @@ work_table = listed.Upright(_works)
 """The table of these works."""
 
 
-def results(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def results(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Formulas with their numbers: tangents, segment, moment of inertia drawn and in the limit, sizes, mass.
 
     With a given flywheel the coefficient of non-uniformity in place of the moment of inertia.
@@ -770,7 +769,7 @@ def _energy_range(fw: Wittenbauer) -> tuple[float, float]:
     return min(float(curve.min()), *ends, 0.0), max(float(curve.max()), *ends, 0.0)
 
 
-def _energy_graph(fw: Wittenbauer, box: Box, options: Options) -> graphs.Graph:
+def _energy_graph(fw: Wittenbauer, box: Box, options: graphs.Options) -> graphs.Graph:
     """Axes of the graph of dE, and the level of the energy-mass diagram: room for ``b`` below, for the tangent above."""
     low, high = _energy_range(fw)
     spare = box.height - (_UNDER + high - low + graphs.HEAD + graphs.OVER)
@@ -778,7 +777,7 @@ def _energy_graph(fw: Wittenbauer, box: Box, options: Options) -> graphs.Graph:
     return graphs.Graph(complex(options["axis"], box.y0 + _UNDER - low + max(spare, 0.0) / 2))
 
 
-def _inertia_graph(fw: Flywheel, box: Box, options: Options) -> graphs.Graph:
+def _inertia_graph(fw: Flywheel, box: Box, options: graphs.Options) -> graphs.Graph:
     return graphs.Graph(complex(options["axis"],
         box.y1 - 16 - max((box.height - 16 - fw.inertia_angle.mm(fw.inertia_turn) - graphs.OVER) / 2, 3.0)), -1j)
 

@@ -8,7 +8,7 @@ options ``energies`` (change, second group, first group) and ``inertia`` are the
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.wheel_methods import Mertsalov
     from tmm_sheets.project import Project
 
-Options = dict[str, Any]
 ENERGIES = ("ΔE", "E_{II}", "E_I")
 INERTIA = "J_{II}"
 OF_SIXBAR = (marked("E_links"), marked("E_f"), marked("J_links"))
@@ -52,12 +51,12 @@ def procedure(project: Project) -> Mertsalov:
                 flywheel.by_method(project, "mertsalov", tell("take the arrangement flywheel among the project's sheets")))
 
 
-def _signs(options: Options) -> tuple[str, str, str, str]:
+def _signs(options: graphs.Options) -> tuple[str, str, str, str]:
     change, second, first = map(tr, options.get("energies", ENERGIES))
     return change, second, first, tr(options.get("inertia", INERTIA))
 
 
-def column(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def column(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """All graphs one under another: moments, works, energies, inertia; each as high as it is, the room left over between them."""
     fw = procedure(project)
     s = fw.scales
@@ -67,7 +66,7 @@ def column(project: Project, canvas: Canvas, box: Box, options: Options) -> None
         (inertia, float(s.inertia.mm(fw.inertia(fw.samples)).max()) + (LEGEND if len(_terms(fw)[0]) > NAMED else 0.0), 8.0)])
 
 
-def inertia(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def inertia(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Reduced moment of inertia of the second group with its terms, read as its energy too; the tangent at the chosen position."""
     fw = procedure(project)
     s = fw.scales
@@ -129,7 +128,7 @@ def _tangent(fw: Mertsalov, of: PlayerStage, box: Box, head: float) -> None:
         of.canvas.angle_mark(vertex, start, end, 16.0, f"ψ = {degrees_and_minutes(psi)}")
 
 
-def energies(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def energies(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Change of kinetic energy, the second group's energy laid off below it, the first group's curve with the segment ab.
 
     The same curve measured from the axis through the middle of ab is the angular velocity of the crank.
@@ -174,7 +173,7 @@ def energies(project: Project, canvas: Canvas, box: Box, options: Options) -> No
         canvas.label(g(complex(points[k].real, (points[k].imag + upper[k]) / 2)), second, 1, height=3.5)
 
 
-def _found(project: Project, options: Options) -> tuple[str, list[list[str]]]:
+def _found(project: Project, options: graphs.Options) -> tuple[str, list[list[str]]]:
     """What was found at every position: moment, work, energies, inertia, angular velocity and acceleration of the crank."""
     fw = procedure(project)
     varying, _ = flywheel.indices(fw)
@@ -197,7 +196,7 @@ position_table = listed.Upright(_found)
 """The table of these results."""
 
 
-def results(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def results(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Formulas with their numbers: segment, moment of inertia, scale factor and check of omega, acceleration, motor, sizes."""
     fw, k = procedure(project), project.force_index
     plan, varying, sign = fw.position_acceleration, flywheel.indices(fw)[0], _signs(options)[3]
@@ -241,7 +240,7 @@ def _extremes(fw: Mertsalov) -> Iterator[str]:
         yield of_step(bound, own={id(bound): value})
 
 
-def comparison(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+def comparison(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
     """Mertsalov's flywheel beside Wittenbauer's, drawn and exact, each with the exact running of the machine that has it."""
     fw = procedure(project)
     rows = [[tr("Flywheel"), tr("J_I, kg·m^2"), tr("ω_{max}, rad/s"), tr("ω_{min}, rad/s"), "δ"]]

@@ -94,7 +94,7 @@ def scheme(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
 
 def speeds(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Plan of the speeds of rotation: rays through the pole parallel to the lines of the picture of velocities."""
-    plan_of_speeds(_train(project), canvas, box)
+    plan_of_speeds(_train(project, canvas), canvas, box)
 
 
 def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -124,15 +124,18 @@ def of_turns(name: str, n: float) -> str:
                     in_letters=False)
 
 
-def mobility_lines(train: Train, ratios: bool = True) -> list[str]:
-    """What stands is frame. Passive meshes are none of the formula's: with them it is left out. Planets have no ratio of use."""
+def mobility_lines(train: Train) -> list[str]:
+    """What stands is frame. Passive meshes are none of the formula's: with them it is left out. Planets have no ratio of use.
+
+    Those of a reducer stand among its equations.
+    """
     n = {name: float(step.value) for name, step in train.links.items() if not train.stands(name)}
     driving = [train.link(name) for name in train.given if not train.stands(name)]
     planets = {train.link(m.planet) for m in train.meshes if m.carrier}
     links, meshes, lines = len(n), len(train.meshes), list[str]()
     if links - meshes == len(driving):
         lines.append(f"W = 3n − 2p_5 − p_4 = 3·{links} − 2·{links} − {meshes} = {links - meshes}")
-    if ratios and len(driving) == 1:
+    if train.data.part == "train" and len(driving) == 1:
         one = driving[0]
         for name in (name for name in n if name != one and name not in planets and n[name]):
             both = f"{one},{name}" if len(one + name) > 2 else one + name
@@ -169,13 +172,14 @@ def _signed(value: float) -> str:
     return f"({text})" if value < 0 else text
 
 
-points = Table(marked("Velocities of the points"), lambda project, canvas: rows_of_points(_train(project), canvas), *POINTS)
+points = Table(marked("Velocities of the points"), lambda project, canvas: rows_of_points(_train(project, canvas), canvas),
+               *POINTS)
 """Points of the picture of velocities: distance from the main axis, segment measured on the picture, velocity."""
-links = Table(marked("Speeds of rotation by the plan"), lambda project, canvas: rows_of_links(_train(project), canvas),
+links = Table(marked("Speeds of rotation by the plan"), lambda project, canvas: rows_of_links(_train(project, canvas), canvas),
               LINKS)
 """Links on the plan of the speeds of rotation: segment measured on it, speed."""
-mobility = Lines(marked("Mobility and speeds of the links"), lambda project, canvas: mobility_lines(project.train))
-"""Degree of freedom by Chebyshev's formula, ratios to the driving link, angular velocities."""
+mobility = Lines(marked("Mobility and speeds of the links"), lambda project, canvas: mobility_lines(_train(project, canvas)))
+"""Degree of freedom by Chebyshev's formula, ratios of a train to its driving link, angular velocities."""
 
 
 def reducer_scheme(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -262,14 +266,11 @@ def equation_lines(r: Reducer) -> Iterator[str]:
 
 of_stage = Lines(marked("The reducer in numbers"), lambda project, canvas: equation_lines(project.reducer))
 """Ratio, conditions and speeds of a planetary stage, and the ratio of the whole reducer."""
-reducer_mobility = Lines(marked("Mobility and speeds of the links"),
-                         lambda project, canvas: mobility_lines(project.reducer, ratios=False))
-"""Degree of freedom of a reducer by Chebyshev's formula, angular velocities of its links."""
 
 
 def _motions(project: Project, canvas: Canvas) -> list[list[str]]:
     """Speeds of the wheels of every carrier as they are, and as one sees them who turns with it (Willis)."""
-    found = list(inverted_speeds(project))
+    found = list(inverted_speeds(_train(project, canvas)))
     several = len({carrier for carrier, *_ in found}) > 1
     return [[tr("Link"), tr("n, rpm"), f"n − n_H, {tr('rpm')}", f"ω, {tr('rad/s')}"], *(
         [f"{name} ({carrier})" if several else name, number(n), number(n - n_carrier), number(n * pi / 30, 5)]
@@ -280,9 +281,8 @@ inverted = Table(marked("Inverted motion (carrier held)"), _motions, (0.25,) * 4
 """Speeds of the wheels relative to their carriers; none without a carrier."""
 
 
-def inverted_speeds(project: Project) -> Iterator[tuple[str, str, float, float]]:
+def inverted_speeds(train: Train) -> Iterator[tuple[str, str, float, float]]:
     """Carrier, wheel, its speed and that of the carrier, rpm."""
-    train = project.train if project.variant.train is not None else project.reducer
     for carrier in dict.fromkeys(m.carrier for m in train.meshes if m.carrier):
         for name in dict.fromkeys(name for m in train.meshes if m.carrier == carrier for name in (m.central, m.planet)):
             yield carrier, name, float(train.kinematics[f"n{name}"].value), float(train.kinematics[f"n{carrier}"].value)
@@ -394,16 +394,14 @@ def meshing_pairs(train: Train) -> Iterator[str]:
                        [Quantity("", z) for z in (*driven, *driving)], result, in_letters=False)
 
 
-of_reducer = Lines(marked("Ratios by the plan of speeds"), lambda project, canvas: _measured(project.reducer, canvas))
-"""Ratios of the driving link of a reducer to the others, from the segments of the plan and from the speeds."""
-of_train = Lines(marked("Ratios by the plan of speeds"), lambda project, canvas: _measured(project.train, canvas))
-"""The same of a train."""
+by_plan = Lines(marked("Ratios by the plan of speeds"), lambda project, canvas: _measured(_train(project, canvas), canvas))
+"""Ratios of the driving link to the others, from the segments of the plan and from the speeds."""
 pairs = Lines(marked("Ratios of the pairs"), lambda project, canvas: meshing_pairs(project.train))
 """Ratio of every pair whose axes stand still, by its speeds and by its teeth; of a train of such pairs that of the whole."""
 
 
-def _title(project: Project) -> str:
-    data = _train(project).data
+def _title(project: Project, canvas: Canvas) -> str:
+    data = _train(project, canvas).data
     return tr("Wheels without shift, h_a^{{*}} = {addendum}, c^{{*}} = {clearance}").format(
         addendum=number(data.addendum), clearance=number(data.clearance))
 
@@ -422,11 +420,12 @@ def rows(train: Train) -> list[list[str]]:
     return [head, *(found[name] for name in train.wheels)]
 
 
-def _train(project: Project) -> Train:
-    return project.train if project.variant.train is not None else project.reducer
+def _train(project: Project, canvas: Canvas) -> Train:
+    """The train, or the reducer whose scheme stands on the sheet."""
+    return project.reducer if project.variant.train is None or "reducer-scheme" in canvas.scales else project.train
 
 
-wheel_table = Table(_title, lambda project, canvas: rows(_train(project)), (0.2,) * 5)
+wheel_table = Table(_title, lambda project, canvas: rows(_train(project, canvas)), (0.2,) * 5)
 """Every wheel with its tooth number and its pitch, tip and root diameters, mm, as they are without shifts (GOST 16532).
 
 None for a train that needs shifts.

@@ -20,7 +20,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import NOISE, fixed, is_zero
 from tmm_sheets.sheets.border_solver import BorderNode, Measured, rows
 from tmm_sheets.sheets.components import graphs, listed
-from tmm_sheets.sheets.components.graphs import Column, Curve, Quantity
+from tmm_sheets.sheets.components.graphs import Column, Curve, Options, Quantity
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
 from tmm_sheets.sheets.linkage.link_marks import SignedTable, indexed, shapes, tell_signs
 from tmm_sheets.sheets.player import PlanFrame, PlayerStage, extent, once, pick, together
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.views import ViewPlace
 
-Options = dict[str, Any]
 GRAPH_SIZES = (280.0, 110.0), (240.0, 96.0), (200.0, 84.0), (170.0, 76.0)
 """Sizes of a single graph over the cycle for room that a sheet has left, mm."""
 
@@ -95,7 +94,8 @@ def motion_low(project: Project, n: int, view: ViewPlace) -> Iterator[Measured |
     columns = motion_graphs(project, view.options)
     if columns and not _moves(columns):
         yield _at_rest(project)
-    yield from graphs.low(project, columns, view.box)
+    else:
+        yield from kinematic.low(project, n, view)
 
 
 def _motion(project: Project, options: Options) -> tuple[str, list[list[str]]]:

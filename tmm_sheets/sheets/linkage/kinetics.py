@@ -24,6 +24,7 @@ from tmm_sheets.sheets.components import flat_crossings, listed
 from tmm_sheets.sheets.linkage import link_marks, moments
 from tmm_sheets.sheets.linkage.kinetic_frames import (
     AROUND,
+    BAR,
     Couple,
     Shown,
     acting_sides,
@@ -63,7 +64,6 @@ if TYPE_CHECKING:
 
 ALONG, SAME = 0.05, 0.01
 """Sine of the angle at which two sides of a polygon lie along each other; distance at which they meet, mm."""
-BAR = "\u0305"
 ROOM = 6.0
 """Room for labels between a force polygon and its equation, mm."""
 UP = 3.0

@@ -22,7 +22,7 @@ from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.numbers import clean, is_zero
 from tmm_sheets.sheets.border_solver import Form as Needed
 from tmm_sheets.sheets.components.listed import Form
-from tmm_sheets.sheets.linkage.kinetic_frames import arm_sign, balancing_sign, flat, normal_sign, on_lever
+from tmm_sheets.sheets.linkage.kinetic_frames import BAR, arm_sign, balancing_sign, flat, normal_sign, on_lever
 from tmm_sheets.sheets.linkage.link_marks import indexed
 from tmm_sheets.sheets.player import extent, once
 from tmm_sheets.words import SHEETS, marked, on_paper, tr
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import StructuralGroup
     from tmm_sheets.project import Project
 
-BAR = "\u0305"
 SENSES = {False: marked("(in the sense of ω_1)"), True: marked("(against ω_1)")}
 """What is said of a balancing moment that is held back, or not: equations take it as it is drawn, as it acts."""
 WIDTHS = (inf, 210.0, 165.0, 130.0, 105.0, 88.0)
