@@ -19,6 +19,7 @@ from tmm_sheets.drawing.marks import Polyline
 from tmm_sheets.numbers import number
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import optional_views
+from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.composing import sheet_code
 from tmm_sheets.sheets.gears import train, train_scheme
 from tmm_sheets.sheets.linkage import diagrams, given_position, kinematics, kinetics, link_marks, moments
@@ -354,9 +355,9 @@ def test_the_table_of_given_sizes_holds_what_the_task_gives(name, lengths):
     assert bool(masses) == any(link.mass for link in m.links.values())
     assert not {"0", "−0"} & {value for _, value in rows}
     assert number(float(m.crank.length)) in {value for sign, value in rows if sign.endswith(", м")}
-    for size, cells, row in given_position.table_forms(project):
-        assert size[1] == pytest.approx(8.0 + row * len(cells))
-        assert sum(cell != "" for line in cells[1:] for cell in line) == 2 * len(rows)
+    for folds in given_position.links.folds:
+        cells = listed.folded([["", ""], *map(list, rows)], folds)
+        assert sum(cell != "" for line in cells for cell in line) == 2 * len(rows)
 
 
 @pytest.mark.parametrize(("name", "least"), [("lugansk/shaper", 60.0), ("screen", 140.0), ("tests/projects/sieve.toml", None)])

@@ -485,7 +485,7 @@ def stepped(view: ViewPlace, least: tuple[float, float], drawn: Callable[[int, i
     return leaf(view.box, Need(least=least, drawn=lambda w, h: max(known(int(w), int(h)), 1.0)), share)
 
 
-def rows(count: int, head: float, row: tuple[float, float], widths: tuple[float, float]) -> BorderNode:
+def table_node(count: int, head: float, row: tuple[float, float], widths: tuple[float, float]) -> BorderNode:
     """Need of a table with so many rows under its heading: rows from the least height to the usual one."""
     need = Need(least=(widths[0], head + row[0] * count), most=(widths[1], head + row[1] * count), drawn=mul)
     return BorderNode(need, area=need.least[0] * need.most[1])

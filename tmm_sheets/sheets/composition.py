@@ -16,7 +16,7 @@ import numpy as np
 
 from tmm_sheets import kept
 from tmm_sheets.box import Box
-from tmm_sheets.construction.scale import CURVE, MAIN, POLE, TOOTH
+from tmm_sheets.construction.scale import CURVE, MAIN, POLE, TOOTH, Scale
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets.answered import Answered
 from tmm_sheets.sheets.border_solver import (
@@ -39,7 +39,6 @@ from tmm_sheets.sheets.views import Arrangement, ViewKind, ViewPlace, arrangemen
 from tmm_sheets.words import Remark, marked
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.scale import Scale
     from tmm_sheets.methods.cams.cam_profile import RockerCam, TappetCam
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.project import Project
@@ -77,12 +76,10 @@ def _arranged(project: Project, n: int) -> Arrangement:
         return apart
     # Whoever sets scale factors by hand has the boxes as they are written; an indicator diagram only makes its mechanism larger.
     as_written = replace(plan, views=tuple(view for view in plan.views if is_meant(project, view)))
-    if project.variant.scales.keys() - {"indicator"}:
+    moving = any(view.needs in ("positions", "forces") for view in plan.views)
+    too_many = moving and len(project.cycle.drawn) > kinematic_frames.MOST
+    if too_many or project.variant.scales.keys() - {"indicator"} or not any(view.kind.place for view in plan.views):
         return as_written
-    if not any(view.kind.place for view in plan.views):
-        return as_written
-    if any(view.needs in ("positions", "forces") for view in plan.views) and len(project.cycle.drawn) > kinematic_frames.MOST:
-        return as_written  # as many positions fit on no sheet
     ways = _ways(project, as_written)
     for way in ways[1:]:
         way.means(ways[0])

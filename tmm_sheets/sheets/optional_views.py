@@ -48,8 +48,8 @@ APART = (12.0, 9.0, 6.0)
 def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside: Box, closed: Sequence[Box]) -> None:
     """Draw those of the offered views that find room ``inside`` the sheet, away from boxes ``closed`` to them.
 
-    A view tells its sizes, from what it wants down to what it can do with, and perhaps the left edge that it would like best or
-    what it belongs to: it stands near that or nowhere, and those that do so choose first.
+    A view tells its sizes, from what it wants down to what it can do with, and perhaps what it belongs to: it stands near that or
+    nowhere, and those that do so choose first. The option ``left`` is the left edge that one would like best, mm.
     """
     taken = cells_closed(inside, closed)
     seen, forces = 0, _of_forces(canvas, inside)
@@ -62,7 +62,7 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside:
             spot, own, others = function(view.kind.near)(project, canvas, view.options)
             box = place_nearest(taken, wanted, inside, spot, [_ink_box(canvas, k, inside) for k in (own, *others)])
         else:
-            at = function(view.kind.left)(view.options) if view.kind.left else None
+            at = view.options.get("left")
             # Nothing parts a loaded scheme from its force plans, and kinematics stand among the forces only where there is no other
             # room. Beside a plan that is all but one line there is much of it from the title to the equation: no plan but a table
             # may stand there.

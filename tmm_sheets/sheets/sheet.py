@@ -14,7 +14,7 @@ import numpy as np
 from tmm_sheets import kept
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.drawing.canvas import MarkGroup, Part
+from tmm_sheets.drawing.canvas import Canvas, MarkGroup, Part
 from tmm_sheets.drawing.marks import (
     Arc,
     Dimension,
@@ -37,7 +37,6 @@ from tmm_sheets.sheets.composed import Composed, Leaving
 from tmm_sheets.words import Remark, tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.drawing.canvas import Canvas
     from tmm_sheets.project import Project
 
 FORM = "5"

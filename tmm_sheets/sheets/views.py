@@ -46,8 +46,6 @@ class ViewKind:
         ``(project, canvas, options)`` to the sizes of an offered view, mm, the one most wanted first; none for nothing to show.
     near
         ``(project, canvas, options)`` to the spot that an offered view belongs to: it stands near that, or nowhere.
-    left
-        ``(options)`` to the left edge that an offered view would like best, mm.
     stands
         where an offered view is looked a place for: with what is of its part; "anywhere" where most is empty; as a "table" that
         belongs to no plan.
@@ -74,7 +72,6 @@ class ViewKind:
     every: str = ""
     sizes: str = ""
     near: str = ""
-    left: str = ""
     stands: Literal["", "anywhere", "table"] = ""
     picture: Literal["", "force plans", "forces", "wheels"] = ""
     after: str = ""
@@ -87,7 +84,6 @@ class ViewKind:
 
 MODULES = {name: module for module, names in {
     "cams.cam": "cam", "cams.cam_law": "cam_law", "cams.cam_profile": "cam_profile", "cams.cam_zone": "cam_zone",
-    "components.listed": "listed",
     "flywheel.enlarged": "crank_speed enlarged", "flywheel.flywheel": "flywheel", "flywheel.mertsalov": "mertsalov",
     "gears.gear": "gear gear_equations", "gears.rack": "rack", "gears.train": "plan_checks planet_motion reducer train wheel_sizes",
     "linkage.details": "details", "linkage.diagrams": "diagrams hodograph load_diagram",
@@ -112,7 +108,7 @@ VIEWS = {view.draw: view for view in (
     ViewKind("diagrams.motion", "positions", place="diagrams.kinematic.place", read="diagrams.motion_low"),
     ViewKind("diagrams.motion_table", "positions", place="diagrams.motion_table_place", sizes="diagrams.motion_table.sizes"),
     ViewKind("false_positions.group", "positions", place="false_positions.group_place"),
-    ViewKind("given_data.links", "positions", sizes="given_data.links_sizes", name=marked("Given sizes and masses"),
+    ViewKind("given_data.links", "positions", sizes="given_data.links.sizes", name=marked("Given sizes and masses"),
              stands="table"),
     ViewKind("given_position.values", "positions", place="given_position.values_place", sizes="given_position.values_sizes",
              name=marked("Values in the given position")),
@@ -134,7 +130,7 @@ VIEWS = {view.draw: view for view in (
     ViewKind("synthesis.sizes", "positions", place="synthesis.place", sizes="synthesis.sizes_sizes"),
     # its forces
     ViewKind("diagrams.balancing", "forces", sizes="diagrams.balancing.sizes", read="diagrams.balancing.low"),
-    ViewKind("diagrams.balancing_table", "forces", sizes="diagrams.balancing_table.sizes", left="listed.left_edge"),
+    ViewKind("diagrams.balancing_table", "forces", sizes="diagrams.balancing_table.sizes"),
     ViewKind("friction.mechanism", "forces", place="friction.mechanism_place"),
     ViewKind("friction.pairs", "forces", place="friction.pairs_place"),
     ViewKind("friction.positions", "forces", place="friction.positions_place"),
@@ -158,7 +154,7 @@ VIEWS = {view.draw: view for view in (
     ViewKind("planet_motion.ratios", sizes="planet_motion.ratios.sizes", stands="anywhere"),
     ViewKind("wheel_sizes.table", by="train.wheel_table", sizes="train.wheel_table.sizes", stands="anywhere"),
     # flywheel
-    ViewKind("crank_speed.graph", "flywheel", sizes="crank_speed.graph_sizes", left="crank_speed.graph_left",
+    ViewKind("crank_speed.graph", "flywheel", sizes="crank_speed.graph_sizes",
              after="flywheel.with_tangents"),
     ViewKind("enlarged.change", "flywheel", sizes="enlarged.change_sizes", after="mertsalov.procedure"),
     ViewKind("enlarged.energy_mass", "flywheel", sizes="enlarged.energy_mass_sizes", after="flywheel.with_tangents"),
@@ -172,7 +168,7 @@ VIEWS = {view.draw: view for view in (
     ViewKind("flywheel.total_work", "flywheel", name=marked("Graph of the change of kinetic energy"),
              after="flywheel.with_tangents"),
     ViewKind("flywheel.wheel", "flywheel"),
-    ViewKind("flywheel.work_table", "flywheel", sizes="flywheel.work_table.sizes", left="listed.left_edge"),
+    ViewKind("flywheel.work_table", "flywheel", sizes="flywheel.work_table.sizes"),
     ViewKind("flywheel.works", "flywheel", name=marked("Graphs of work")),
     ViewKind("mertsalov.column", "flywheel", name=marked("Graphs of Mertsalov's method"), read="composition.flywheel",
              after="mertsalov.procedure"),

@@ -8,7 +8,7 @@ import pytest
 from tmm_sheets import summary
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import Box, Text
+from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import BadInput
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.linkage import given_position
@@ -20,9 +20,9 @@ ROOT = Path(__file__).parents[3]
 def title(project):
     """What stands over the table."""
     canvas = Canvas()
-    ((width, height), *_) = given_position.links_sizes(project, canvas, {})
+    ((width, height), *_) = given_position.links.sizes(project, canvas, {})
     given_position.links(project, canvas, Box(0.0, 0.0, width, height), {})
-    return next(mark.text for mark in canvas.marks if isinstance(mark, Text))
+    return canvas.parts[-1].title
 
 
 def test_the_diesel_has_weights_angle_and_unevenness_as_table_2_1_prints_them():

@@ -421,7 +421,10 @@ def table_place(project: Project, view: ViewPlace) -> BorderNode:
 def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """S, S', S'' and the pressure angle in the numbered positions; without upper dwell 8 and 8' are one."""
     cam: Cam = project.cam
-    second = _second_derivative(cam)
+    # By the side it is taken from: both limits where it jumps.
+    before, after = cam.exact.before.dds.value, cam.exact.after.dds.value
+    second = {"": before} if np.allclose(before, after, rtol=0, atol=1e-9 * float(np.abs((before, after)).max())) else \
+        {" (φ−0)": before, " (φ+0)": after}
     turned, values = np.degrees(cam.inversion.phi), [*_diagram_rows(cam.motion, second),
                                                      *_check_values(cam, second, options.get("angle", ANGLE))]
     for places in (2, 1):
@@ -430,13 +433,6 @@ def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
             break
     kept = [0, *(k + 1 for k in distinct(cam.motion.law.labels, turned))]
     listed.table(canvas, box, [[cells[k] for k in kept] for cells in rows], 8.0)
-
-
-def _second_derivative(cam: Cam) -> dict[str, Any]:
-    """The second derivative at the numbered positions by the side it is taken from: both limits where it jumps."""
-    before, after = cam.exact.before.dds.value, cam.exact.after.dds.value
-    return {"": before} if np.allclose(before, after, rtol=0, atol=1e-9 * float(np.abs((before, after)).max())) else \
-        {" (φ−0)": before, " (φ+0)": after}
 
 
 def _diagram_rows(m: FollowerMotion, second: Mapping[str, Any]) -> Iterator[list[str]]:

@@ -104,8 +104,8 @@ def begin(canvas: Canvas, box: Box, options: Options, heads: tuple[str, ...], lo
 def axes(canvas: Canvas, g: Graph, length: float, low: float, high: float, ordinate: str, abscissa: str = "") -> None:
     """Axis of the angle, or another ``abscissa``, of a length and ordinate axis over a range, mm, with their signs."""
     canvas.arrow(g(0j), g(length + OVER), "axis", 3.0)
-    sign = abscissa or tr("{symbol}, rad").format(symbol="φ_1")
-    canvas.label(complex(g(length + OVER)) - 5.0, sign, -1j, 3.5, 1.5, leader=False)
+    sign, half = (abscissa, letter(abscissa, 3.5).width / 2 + 2.0) if abscissa else (tr("{symbol}, rad").format(symbol="φ_1"), 5.0)
+    canvas.label(complex(g(length + OVER)) - half, sign, -1j, 3.5, 1.5, leader=False)
     canvas.arrow(g(1j * (low - 3 if low else 0)), g(1j * (high + OVER)), "axis", 3.0)
     canvas.text(complex(g(1j * (high + OVER))) - 2.0 - 2.5j, ordinate, 3.5, "right")
 

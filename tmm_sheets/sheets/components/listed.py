@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, product
 from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -183,6 +183,11 @@ def table_in(canvas: Canvas, left: Box, rows: Sequence[Sequence[str]], tallest: 
     return canvas.table(complex(left.x0, left.y1), widened(widths, rows, height), rows, row, height, header)
 
 
+def over_positions(labels: Sequence[str], columns: Sequence[tuple[str, Sequence[str]]]) -> Rows:
+    """Rows of a table with a column of numbers for each quantity, named at its head, and a row for each position."""
+    return [[tr("No."), *(name for name, _ in columns)], *zip(labels, *(cells for _, cells in columns), strict=True)]
+
+
 TRIED = (7.0, 3.5, 4.0), (6.4, 3.5, 2.0), (7.0, 2.5, 2.5), (5.6, 2.5, 2.0), (4.6, 2.5, 2.0)
 """Heights of rows and of their letters, and what a column is wider than its widest text, mm: the largest first."""
 UNDER = 3.0
@@ -209,31 +214,44 @@ def draw_upright(canvas: Canvas, box: Box, title: str, rows: Rows) -> None:
     canvas.table(complex(box.x0, box.y1 - head), widened(widths, rows, letters), rows, row, letters, 1 if rows[1][0] else 2)
 
 
+def folded(rows: Rows, count: int) -> list[list[str]]:
+    """A table under its first row in so many parts side by side."""
+    head, *body = rows
+    each = -(-len(body) // count)
+    body = [*body, *[[""] * len(head)] * (each * count - len(body))]
+    return [[*head] * count, *([cell for row in body[k::each] for cell in row] for k in range(each))]
+
+
 @dataclass(frozen=True)
 class Upright:
     """A view of such a table: ``of`` gives its title and its cells.
 
-    It is offered with a column of numbers at least, no wider than the option ``widest``.
+    It is offered with a column of numbers at least, no wider than the option ``widest``, in one of so many ``folds``.
     """
 
     of: Callable[[Project, dict[str, Any]], tuple[str, Rows]]
+    folds: tuple[int, ...] = (1,)
 
-    def sizes(self, project: Project, canvas: Canvas, options: dict[str, Any]) -> Sizes:
-        """Places that it can do with, the largest first, each at least as wide as the longest word of the title."""
+    def _forms(self, project: Project, options: dict[str, Any]) -> Iterator[tuple[tuple[float, float], Rows]]:
+        """Places that it can do with, the largest first, each at least as wide as the longest word of the title, and its cells."""
         title, rows = self.of(project, options)
         word = max(letter(word, 3.5).width for word in title.split(" "))
-        found = [(max(sum(needs(rows, height, gap)), word), row) for row, height, gap in TRIED if len(rows[0]) > 1]
-        return [(width, _head(title, width)[1] + row * len(rows)) for width, row in found if width <= options.get("widest", inf)]
+        cells = [folded(rows, count) for count in self.folds] if min(len(rows), len(rows[0])) > 1 else []
+        for (row, height, gap), some in product(TRIED, cells):
+            width = max(sum(needs(some, height, gap)), word)
+            if width <= options.get("widest", inf):
+                yield (width, _head(title, width)[1] + row * len(some)), some
+
+    def sizes(self, project: Project, canvas: Canvas, options: dict[str, Any]) -> Sizes:
+        """Places that it can do with."""
+        return [size for size, _ in self._forms(project, options)]
 
     def __call__(self, project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
         """Draw it."""
-        draw_upright(canvas, box, *self.of(project, options))
-
-
-def left_edge(options: dict[str, Any]) -> float | None:
-    """Where such a table would like to begin, mm, if its arrangement says so: at the edge of the sheet, beside an ordinate axis."""
-    found: float | None = options.get("left")
-    return found
+        title, rows = self.of(project, options)
+        forms = self._forms(project, options) if len(self.folds) > 1 else iter(())
+        draw_upright(canvas, box, title, next((some for (width, height), some in forms
+                                               if width <= box.width + 1e-6 and height <= box.height + 1e-6), rows))
 
 
 def _head(title: str, width: float) -> tuple[Heading, float]:

@@ -2,8 +2,8 @@
 
 Where dE is little beside what belongs to it, the links' own energy, or the segment ab, sets the scale factor of the construction;
 where J hardly varies, that of the links that always turn. What is too low or too narrow at it to be read is shown again, its
-tangencies too, at a scale factor of its own: dE from the axis on, J from where it begins. The option ``axis`` of the graph
-of the angular velocity is the x of the ordinate axis of the other graphs, mm: beneath them its positions stand under theirs.
+tangencies too, at a scale factor of its own: dE from the axis on, J from where it begins. With its
+option ``left`` the axis of the graph of the angular velocity stands ``LEFT`` from there, under those of the other graphs.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ import numpy as np
 from tmm_sheets.construction.scale import MAIN, Scale, fit
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink import segment_inside
-from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import is_zero, number
@@ -155,14 +154,10 @@ def energy_mass(project: Project, canvas: Canvas, box: Box, options: graphs.Opti
         of.position(near[0]).dot("points", 0.7, "main")
         away = points[near[0]] - middle
         of.position(near[0]).letters("points", ", ".join(fw.labels[k] for k in near), away / abs(away))
-    pen, reach = of.pen("points", "axis"), x.mm(widest) + graphs.OVER
-    pen.arrow(g(0j), g(reach), "axis", 3.0)
-    pen.arrow(g(1j * (low - 3.0 if low else 0.0)), g(1j * (high + graphs.OVER)), "axis", 3.0)
-    canvas.text(complex(g(1j * (high + graphs.OVER))) - 2.0 - 2.5j, tr("ΔE, J"), 3.5, "right")
+    pen = of.pen("points", "axis")
+    graphs.axes(pen, g, x.mm(widest), low, high, tr("ΔE, J"), tr("J^red, kg·m^2"))
     if first:
         pen.label(complex(g(0j)), number(first), -1 + 0j, 3.5, 1.5, leader=False)
-    sign = tr("J^red, kg·m^2")
-    pen.label(g(reach - letter(sign, 3.5).width / 2 - 2.0), sign, -1j, 3.5, 1.5, leader=False)
 
 
 CRANK_SPEED = ((260.0, 120.0), (220.0, 105.0), (180.0, 105.0), (150.0, 105.0))
@@ -175,11 +170,6 @@ def graph_sizes(project: Project, canvas: Canvas, options: graphs.Options) -> tu
         return ()
     as_others = fw.scales.angle.mm(fw.reduced.period) + LEFT + RIGHT
     return (*((as_others, high) for high in (145.0, 120.0, 105.0)), *(size for size in CRANK_SPEED if size[0] < as_others))
-
-
-def graph_left(options: graphs.Options) -> float:
-    """Left edge, mm, with which its axis stands under those of the other graphs."""
-    return float(options["axis"]) - LEFT
 
 
 def graph(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:

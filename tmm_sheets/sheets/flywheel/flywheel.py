@@ -34,7 +34,6 @@ from tmm_sheets.words import tell, tr, tr_in
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.expression import Floats
-    from tmm_sheets.construction.scale import Scale
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.methods.flywheel.wheel import RimWheel
@@ -378,10 +377,10 @@ def inertia(project: Project, canvas: Canvas, box: Box, options: graphs.Options)
     curve = angle.mm(phi) + 1j * s.inertia.mm(fw.inertia(fw.samples)[:len(phi)])
     of = stage(canvas, fw.inertia_plan, None, g.place())
     of.curve("points", g(curve))
-    levels = together(fw.inertia_plan["points"].value.real, 1e-6)
-    for same in levels:
+    levels = fw.inertia_plan["points"].value.real
+    for same in together(levels, 1e-6):
+        x = levels[same[0]]
         play(of.position(same[0]), ["points"], "thin")
-    for x, same in ((fw.inertia_plan["points"].value[same[0]].real, same) for same in levels):
         # The first number stands above the axis of J, which begins to the left of the curve.
         canvas.text(g(x) - 2.0 + (-1.2j if x > 0 else 0.8j), ", ".join(fw.labels[k] for k in same), 3.5, "right")
     highest = float(curve.imag.max())
@@ -527,10 +526,9 @@ def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
         canvas.circle(centre, d * k / 2, "centre")
         for i in range(6):
             _spoke(canvas, centre, rect(1, pi / 2 + i * pi / 3), hub, r - h * k, 0.05 * d * k)
-    canvas.line(centre - r - 4, centre + r + 4, "centre")
-    canvas.line(centre - 1j * (r + 4), centre + 1j * (r + 4), "centre")
     half = b * k / 2
-    canvas.line(side - half - 4, side + half + 4, "centre")
+    for at, reach in ((centre, r + 4.0), (centre, 1j * (r + 4.0)), (side, half + 4.0)):
+        canvas.line(at - reach, at + reach, "centre")
     for sign in (1, -1):
         low = r - h * k if rim else bore
         _cut(canvas, side, half, sign * low, sign * r)
@@ -596,7 +594,7 @@ def inertia_table(project: Project, canvas: Canvas, box: Box, options: graphs.Op
         graphs.row(tr("J^red, kg·m^2"), fw.J_reduced)])
 
 
-def _works(project: Project, options: graphs.Options) -> tuple[str, list[list[str]]]:
+def _works(project: Project, options: graphs.Options) -> tuple[str, listed.Rows]:
     """Moment, works and change of energy at the positions, the units under the names."""
     fw: Flywheel = project.flywheel
     varying, constant = indices(fw)
@@ -607,8 +605,9 @@ def _works(project: Project, options: graphs.Options) -> tuple[str, list[list[st
         graphs.row(tr("A_{index}, J").format(index=constant), fw.total_plan["A_K"].value),
         graphs.row(tr("ΔE, J"), fw.delta_E),
     ]
-    columns = [[tr("No."), "", *fw.labels], *([*name.rsplit(", ", 1), *numbers] for name, *numbers in quantities)]
-    return title.replace(" = ", f"{TOGETHER}={TOGETHER}"), [list(row) for row in zip(*columns, strict=True)]
+    columns = [([*name.rsplit(", ", 1)], numbers) for name, *numbers in quantities]
+    return title.replace(" = ", f"{TOGETHER}={TOGETHER}"), listed.over_positions(["", *fw.labels], [
+        (name, [unit, *numbers]) for (name, unit), numbers in columns])
 
 
 work_table = listed.Upright(_works)

@@ -173,7 +173,7 @@ def energies(project: Project, canvas: Canvas, box: Box, options: graphs.Options
         canvas.label(g(complex(points[k].real, (points[k].imag + upper[k]) / 2)), second, 1, height=3.5)
 
 
-def _found(project: Project, options: graphs.Options) -> tuple[str, list[list[str]]]:
+def _found(project: Project, options: graphs.Options) -> tuple[str, listed.Rows]:
     """What was found at every position: moment, work, energies, inertia, angular velocity and acceleration of the crank."""
     fw = procedure(project)
     varying, _ = flywheel.indices(fw)
@@ -186,10 +186,8 @@ def _found(project: Project, options: graphs.Options) -> tuple[str, list[list[st
         ("ε_1", tr("rad/s^2"), fw.position_acceleration["ε1"].value),
     ]
     # The angular velocity hardly changes: a digit more shows it.
-    cells = [graphs.column(values, 5 if name == "ω_1" else 4) for name, _, values in columns]
-    rows = [[tr("No."), *(name for name, _, _ in columns)], ["", *(unit for _, unit, _ in columns)]]
-    rows += [[label, *(column[i] for column in cells)] for i, label in enumerate(fw.labels)]
-    return tr("Results by positions"), rows
+    return tr("Results by positions"), listed.over_positions(["", *fw.labels], [
+        (name, [unit, *graphs.column(values, 5 if name == "ω_1" else 4)]) for name, unit, values in columns])
 
 
 position_table = listed.Upright(_found)

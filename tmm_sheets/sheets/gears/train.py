@@ -16,8 +16,7 @@ from tmm_sheets.drawing.lettering import fitted
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_layout import widened
 from tmm_sheets.numbers import fixed, is_zero, number
-from tmm_sheets.sheets import border_solver
-from tmm_sheets.sheets.border_solver import BorderNode, stepped
+from tmm_sheets.sheets.border_solver import BorderNode, stepped, table_node
 from tmm_sheets.sheets.components.listed import LARGE, Lines, Table, letters_in
 from tmm_sheets.sheets.gears.gear_marks import ruled_table, sentence
 from tmm_sheets.sheets.gears.train_scheme import (
@@ -78,7 +77,7 @@ def table_place(project: Project, view: ViewPlace) -> BorderNode:
             rows = 2 * len(of.meshes)
         case _:
             rows = len(dimensions(project))
-    return border_solver.rows(rows, head, (6.0, LARGE), (150.0, 190.0))
+    return table_node(rows, head, (6.0, LARGE), (150.0, 190.0))
 
 
 def _shown(project: Project, view: ViewPlace) -> Train:

@@ -63,7 +63,11 @@ ROLES = ("vector", "construction", "point", "link", "symbol", "hatch")
 
 @dataclass(frozen=True)
 class Dense:
-    """What is to be enlarged: the part of the sheet it is of, the middle and the reach of it, mm, the scale factor there."""
+    """What is to be enlarged: the part of the sheet it is of, the middle and the reach of it, mm, the scale factor there.
+
+    ``lettered`` tells at how many of its places letters are asked for. ``draw`` draws it in a window and takes from the view what
+    stands there now; it gives the radius of the circle round it, mm.
+    """
 
     part: int
     centre: complex
@@ -96,14 +100,6 @@ class Dense:
         wide = [max(2 * (half + self.beside), letter(str(self.factor(half)), 5.0).width + 2.1) for half in halves]
         return [*((width, 2 * half + HEAD) for width, half in zip(wide[:2], halves, strict=False)),
                 *((2 * (half + self.beside), 2 * half + HEAD) for half in halves)]
-
-    def lettered(self, canvas: Canvas) -> int:
-        """At how many of its places letters are asked for."""
-        raise NotImplementedError
-
-    def draw(self, project: Project, canvas: Canvas, middle: complex, half: float) -> float:
-        """Draw it in a window and take from the view what stands there now; gives the radius of the circle round it, mm."""
-        raise NotImplementedError
 
 
 def dense_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
@@ -191,7 +187,7 @@ def next_name(canvas: Canvas) -> str:
     return NAMES[sum(part.title.split(" ")[0] in NAMES for part in canvas.parts)]
 
 
-def nth_dense_place(project: Project, canvas: Canvas, options: dict[str, Any]) -> Dense | None:
+def nth_dense_place(project: Project, canvas: Canvas, options: dict[str, Any]) -> Corner | Crowd | None:
     """The dense place that the ``nth`` detail is of: those before it are drawn, or found no room."""
     drawn = sum(part.draw == VIEW and bool(part.title) for part in canvas.parts)
     left = _every(project, canvas)
@@ -199,13 +195,13 @@ def nth_dense_place(project: Project, canvas: Canvas, options: dict[str, Any]) -
     return left[n] if n < len(left) else None
 
 
-def _every(project: Project, canvas: Canvas) -> list[Dense]:
+def _every(project: Project, canvas: Canvas) -> list[Corner | Crowd]:
     """All dense places of a sheet that are not shown enlarged yet."""
     circles = [mark.centre for n in canvas.windows if isinstance(mark := canvas.marks[n], Arc)]
     plans = polygons_of(project) if canvas.frames else {}
     whole = whole_polygons(canvas, plans)
-    return [place for place in (*crowds(canvas, {frame.view for frame in whole}), *dense_corners(canvas, plans, whole))
-            if not any(abs(place.centre - at) < 1e-6 for at in circles)]
+    found: list[Corner | Crowd] = [*crowds(canvas, {frame.view for frame in whole}), *dense_corners(canvas, plans, whole)]
+    return [place for place in found if not any(abs(place.centre - at) < 1e-6 for at in circles)]
 
 
 def _placed(canvas: Canvas, frame: PlacedFrame, centre: complex, middle: complex, times: float) -> int:
@@ -245,15 +241,6 @@ class Corner(Dense):
     beside = 1.0
     away = 1 + 1j
     within = WIDE
-
-    @classmethod
-    def of(cls, canvas: Canvas, plan: Plan, frame: PlacedFrame, k: int, vectors: tuple[Vector, ...], points: dict[str, complex],
-           names: tuple[str, ...]) -> Corner:
-        """The corners of these names."""
-        z, scale = np.array([points[name] for name in names]), canvas.scales[plan.name]
-        centre = complex(z.real.min() + z.real.max(), z.imag.min() + z.imag.max()) / 2
-        reach = float(np.abs(z - centre).max())
-        return cls(frame.view, centre, reach, replace(scale, mu=frame.mu[1]), plan, frame, k, vectors, points, names)
 
     @property
     def crossed(self) -> int:
@@ -372,7 +359,9 @@ def dense_corners(canvas: Canvas, polygons: Mapping[str, Polygon], whole: Sequen
         there = dict.fromkeys(name for _, a, b in drawn for name in (a, b))
         of_plan = list[Corner]()
         for names in points_together({name: points[name] for name in there}, drawn):
-            it = Corner.of(canvas, plan, frame, k, drawn, points, names)
+            z, scale = np.array([points[name] for name in names]), replace(canvas.scales[plan.name], mu=frame.mu[1])
+            centre = Box.around(z).centre
+            it = Corner(frame.view, centre, float(np.abs(z - centre).max()), scale, plan, frame, k, drawn, points, names)
             if it.crossed <= MOST and not any(set(names) & set(other.names) for other in of_plan):
                 of_plan.append(it)
         found += [((plan.name in many, rank, -len(it.names) * (plan.name in many)), it) for rank, it in enumerate(of_plan)]
@@ -506,7 +495,7 @@ def crowds(canvas: Canvas, polygons: Collection[int]) -> list[Crowd]:
         near = np.abs(z[:, None] - z) <= ROUND
         among = z[near[np.argmax(near.sum(axis=1))]]
         if len(among) >= MANY:
-            centre = complex(among.real.min() + among.real.max(), among.imag.min() + among.imag.max()) / 2
+            centre = Box.around(among).centre
             reach = float(np.abs(among - centre).max()) + EDGE
             scale = list(canvas.scales.values())[canvas.parts[part].scales - 1]
             labels = tuple(label for label in asked if abs(label.anchor - centre) < reach - EDGE / 2)

@@ -18,7 +18,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import NOISE, fixed, is_zero
-from tmm_sheets.sheets.border_solver import BorderNode, Measured, rows
+from tmm_sheets.sheets.border_solver import BorderNode, Measured, table_node
 from tmm_sheets.sheets.components import graphs, listed
 from tmm_sheets.sheets.components.graphs import Column, Curve, Options, Quantity
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
@@ -124,7 +124,7 @@ def motion_table_place(project: Project, view: ViewPlace) -> BorderNode | None:
     bars = [shape.link for shape in shapes(project.study.positions)[1:] if shape.bar and view.options.get("links")]
     columns = 1 + 3 * len({*(view.options.get("of") or project.diagrams), *bars})
     count = len(project.cycle.labels) + (2 if view.options.get("links") else 1)
-    return rows(count, 9.0, (5.6 if count <= 26 else 5.0, 7.0), (max(100.0, listed.COLUMN * columns), 170.0))
+    return table_node(count, 9.0, (5.6 if count <= 26 else 5.0, 7.0), (max(100.0, listed.COLUMN * columns), 170.0))
 
 
 motion_table = SignedTable(_motion)

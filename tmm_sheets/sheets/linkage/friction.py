@@ -19,8 +19,8 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import fixed, is_zero, number
-from tmm_sheets.sheets.border_solver import BorderNode, Figure, leaf, rows, stepped
+from tmm_sheets.numbers import clean, fixed, is_zero, number
+from tmm_sheets.sheets.border_solver import BorderNode, Figure, leaf, stepped, table_node
 from tmm_sheets.sheets.components import graphs, listed
 from tmm_sheets.sheets.linkage import diagrams, link_marks
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
@@ -63,12 +63,8 @@ def _friction(project: Project) -> Friction:
 def _reactions(project: Project) -> list[tuple[str, Step, complex]]:
     """Pairs with friction: index, step of the reaction on the first link, and the reaction, N."""
     of, k, forces = _friction(project), project.force_index, project.study.forces
-    found = []
-    for index in of.pairs:
-        step = forces.reactions[f"F{index}"]
-        force = complex(step.at(k))
-        found.append((index, step, 0j if is_zero(abs(force), forces.force_size(k)) else force))
-    return found
+    steps = {index: forces.reactions[f"F{index}"] for index in of.pairs}
+    return [(index, step, clean(complex(step.at(k)), forces.force_size(k))) for index, step in steps.items()]
 
 
 def _hinge(of: Friction, index: str) -> str:
@@ -298,7 +294,7 @@ def _balance(project: Project, of: Friction, k: int) -> list[str]:
     return lines
 
 
-def _in_positions(project: Project, options: dict[str, Any]) -> tuple[str, list[list[str]]]:
+def _in_positions(project: Project, options: dict[str, Any]) -> tuple[str, listed.Rows]:
     """Sizes of the reactions with friction in all positions, what drives the crank, and the power of friction."""
     of, study = _friction(project), project.study
     n, forces = len(study.labels), study.forces
@@ -309,10 +305,8 @@ def _in_positions(project: Project, options: dict[str, Any]) -> tuple[str, list[
     columns = [(tr("F_{{{index}}}, N").format(index=index), np.abs(np.broadcast_to(forces.reactions[f"F{index}"].value, (n,))))
                for index in of.pairs]
     columns += [(f"{sign}, {unit}", np.broadcast_to(drive, (n,))), (tr("N_f, W"), np.broadcast_to(of.total.value, (n,)))]
-    rows = [[tr("No."), *(name for name, _ in columns)]]
-    cells = [graphs.column(values, 4) for _, values in columns]
-    rows += [[label, *(column[i] for column in cells)] for i, label in enumerate(study.labels)]
-    return tr("Reactions with friction in all positions"), rows
+    return tr("Reactions with friction in all positions"), listed.over_positions(study.labels, [
+        (name, graphs.column(values)) for name, values in columns])
 
 
 positions = listed.Upright(_in_positions)
@@ -347,9 +341,9 @@ def pairs_place(project: Project, view: ViewPlace) -> BorderNode:
 def table_place(project: Project, view: ViewPlace) -> BorderNode:
     """A row for each pair."""
     found = project.study.forces.friction
-    return rows(len(found.pairs) + 1 if found else 1, 34.0, (5.0, ROWS[0]), (0.7 * view.box.width, inf))
+    return table_node(len(found.pairs) + 1 if found else 1, 34.0, (5.0, ROWS[0]), (0.7 * view.box.width, inf))
 
 
 def positions_place(project: Project, view: ViewPlace) -> BorderNode:
     """A row for each position."""
-    return rows(len(project.cycle.labels) + 1, 12.0, (4.6, ROWS[1]), (0.7 * view.box.width, inf))
+    return table_node(len(project.cycle.labels) + 1, 12.0, (4.6, ROWS[1]), (0.7 * view.box.width, inf))

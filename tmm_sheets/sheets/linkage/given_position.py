@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import chain, product
-from math import ceil, inf
+from itertools import chain
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,8 +18,7 @@ from tmm_sheets.drawing.text_layout import needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import Sizes, decimals_for, fixed, is_zero, number, written
-from tmm_sheets.sheets.border_solver import BorderNode
-from tmm_sheets.sheets.border_solver import rows as rows_needed
+from tmm_sheets.sheets.border_solver import BorderNode, table_node
 from tmm_sheets.sheets.components import graphs, listed
 from tmm_sheets.sheets.linkage import kinematic_frames, link_marks
 from tmm_sheets.sheets.player import once
@@ -51,7 +50,7 @@ def _extent(project: Project) -> tuple[int, float]:
 
 def values_place(project: Project, view: ViewPlace) -> BorderNode:
     """Tables of points, links and loads."""
-    return rows_needed(*_extent(project), (5.0, 7.0), (140.0, 200.0))
+    return table_node(*_extent(project), (5.0, 7.0), (140.0, 200.0))
 
 
 def values(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -126,56 +125,25 @@ def _signed(step: Step | None, k: int, kind: float, sense: float) -> str:
     return "−" if step is None else number(sense * float(np.real(step.at(k))), kind=kind)
 
 
-ROWS = (7.0, 6.4, 5.6, 4.6)
-"""Heights of the rows that are tried, mm."""
-BESIDE = (1, 2, 3)
-"""How many quantities may stand in one row."""
-ROOMY = 8.0
-"""What a column is wider than its widest text, mm."""
-
 UNITS = {"deg": "°", **{unit.replace(" ", "").replace("·", "").replace("²", "2"): unit for unit in (
     marked("m"), marked("mm"), marked("cm"), marked("kg"), marked("kg·m²"), marked("N"), marked("kN"), marked("N·m"),
     marked("kN·m"), marked("rad/s"), marked("rpm"), marked("m/s"), marked("MPa"), marked("kW"))}}
 """How the units of a task are written on paper, by their common spelling; others stand as they are."""
 
 
-def links_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the table can do with, mm; none where a mechanism has no length of its own."""
-    return [size for size, _, _ in table_forms(project)]
-
-
-def links(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """What the task gives as it prints it.
+def _given(project: Project, options: dict[str, Any]) -> tuple[str, Rows]:
+    """What the task gives as it prints it; nothing where a mechanism has no length of its own.
 
     Where the file does not say: where the fixed hinges are, lengths in the order in which the links are put together, then masses
     and moments of inertia.
     """
-    _, rows, row = next(form for form in table_forms(project) if form[0][0] <= box.width + 1e-6 and form[0][1] <= box.height + 1e-6)
-    height = size_in(row)
-    widths = needs(rows, height, ROOMY)
-    spare = max(box.width - sum(widths), 0.0) / len(widths)
-    canvas.text(complex(box.centre.real, box.y1 - 5.5), _title(project), 3.5, "centre")
-    canvas.table(complex(box.x0, box.y1 - HEAD), [w + spare for w in widths], rows, row, height)
-
-
-def _title(project: Project) -> str:
     heavy = any(link.mass for link in project.mechanism.links.values())
-    return tr("Given data") if project.given else tr("Given sizes and masses") if heavy else tr("Given sizes")
+    title = tr("Given data") if project.given else tr("Given sizes and masses") if heavy else tr("Given sizes")
+    return title, [[tr("Quantity"), tr("Value")], *map(list, given_quantities(project))]
 
 
-@once
-def table_forms(project: Project) -> list[tuple[tuple[float, float], Rows, float]]:
-    """Size on paper, rows and their height, of the forms of the table: the clearest first; none where there are no quantities."""
-    found = list[tuple[tuple[float, float], Rows, float]]()
-    cells, title = [[symbol, value] for symbol, value in given_quantities(project)], _title(project)
-    for row, beside in product(ROWS, BESIDE if cells else ()):
-        count = -(-len(cells) // beside)
-        columns = [cells[n * count:(n + 1) * count] for n in range(beside)]
-        lines = [[text for column in columns for text in (column[i] if i < len(column) else ["", ""])] for i in range(count)]
-        rows = [[tr("Quantity"), tr("Value")] * beside, *lines]
-        width = max(sum(needs(rows, size_in(row), ROOMY)), letter(title, 3.5).width + 4.0)
-        found.append(((width, HEAD + row * len(rows)), rows, row))
-    return found
+links = listed.Upright(_given, folds=(1, 2, 3))
+"""The table of what the task gives."""
 
 
 def given_quantities(project: Project) -> Iterator[tuple[str, str]]:
@@ -255,8 +223,6 @@ COLUMNS = 7
 """So many columns the table of lengths has in about half of the place; with more it shares the width with that of speeds."""
 WIDE = 19.0
 """Width of a column of the table of lengths, mm: that of a number in letters of 3.5 mm."""
-FOLD = 6.0
-"""Distance of the parts of a table side by side, mm."""
 LOWEST = 3.9
 """Height of a row, mm, below which letters of 2.5 mm touch its lines."""
 
@@ -265,7 +231,7 @@ def velocity_tables_place(project: Project, view: ViewPlace) -> BorderNode:
     """A row for each drawn position."""
     over = 2 if view.options.get("stacked") else 1
     wide = 30.0 + listed.COLUMN * kinematic_frames.columns(project) / over
-    return rows_needed(over * (len(project.cycle.drawn) + 2), 10.0 * over, (5.0, 7.5),
+    return table_node(over * (len(project.cycle.drawn) + 2), 10.0 * over, (5.0, 7.5),
                        (max(min(wide, 320.0), 0.8 * view.box.width), inf))
 
 
@@ -353,7 +319,7 @@ def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any
 
 def table_folds(box: Box, positions: int, *columns: int) -> int:
     """Parts of the tables side by side: two, where so many rows are too low for the usual letters and the columns leave room."""
-    wide = sum(2 * (10.0 + WIDE * count) + FOLD for count in columns) + 10.0
+    wide = sum(2 * (10.0 + WIDE * count) for count in columns) + 10.0
     return 2 if size_in(_row(box, positions)) < 3.5 and wide <= box.width else 1
 
 
@@ -370,7 +336,7 @@ def _table_places(box: Box, columns: int, speeds: int, *, stacked: bool, folds: 
         return Box(box.x0, middle + 2.0, box.x1, box.y1), Box(box.x0, box.y0, box.x1, middle - 2.0)
     few = (0.45 * box.width - 10.0) / columns if columns <= COLUMNS else 0.0
     one = min(WIDE, max(few, (box.width - 30.0) / (columns + speeds)))
-    left = Box(box.x0, box.y0, box.x0 + folds * (10.0 + one * columns) + (folds - 1) * FOLD, box.y1)
+    left = Box(box.x0, box.y0, box.x0 + folds * (10.0 + one * columns), box.y1)
     return left, Box(left.x1 + 10.0, box.y0, box.x1, box.y1)
 
 
@@ -387,32 +353,28 @@ def table_over_positions(project: Project, canvas: Canvas, place: Box, title: st
     ``decimals`` unless a column's numbers are too small for them, but for those that are nothing beside the others. What has no
     room at all is named in a remark.
     """
-    cycle = project.cycle
     greatest = {name: float(np.nanmax(np.abs(v), initial=0.0)) for name, v in columns}
     places = {name: decimals_for([size], decimals) if size > NOTHING * max(greatest.values()) else decimals
               for name, size in greatest.items()}
-    cells = [[tr("No."), *(name for name, _ in columns)]]
-    cells += [[label, *(fixed(float(v[i]), places[name]) for name, v in columns)]
-              for i, label in cycle.drawn]
+    cells = [[tr("No."), *(name for name, _ in columns)],
+             *([label, *(fixed(float(v[i]), places[name]) for name, v in columns)] for i, label in project.cycle.drawn)]
     if lying:
         cells = [list(row) for row in zip(*cells, strict=True)]
         room = max(int((place.height - 9.0) / LOWEST), 2)
         if len(cells) > room:
             canvas.note(place, tr("The table has no room for {names}").format(names=", ".join(row[0] for row in cells[room:])))
             cells = cells[:room]
-    each = ceil((len(cells) - 1) / folds)
-    row = min((place.height - 9.0) / len(cells), 7.5) if lying else _row(place, each)
+    cells = listed.folded(cells, folds)
+    row = min((place.height - 9.0) / len(cells), 7.5) if lying else _row(place, len(cells) - 1)
     # A head that is too long goes on in a second line: beside a larger one nobody reads it.
     head = [title] if letter(title, 3.5).width <= place.width else [part for part in title.partition("; ")[::2] if part]
     begin = complex(place.centre.real, place.y1 - (5.0 if len(head) == 1 else 2.2))
     canvas.lines(begin, head, 5.0, size_for(head, place.width, 3.5), "centre")
-    height, count, width = size_in(row), len(cells[0]) - 1, (place.width - (folds - 1) * FOLD) / folds
-    if sum(needs(cells, height)) > width:
+    height, count = size_in(row), len(cells[0]) // folds - 1
+    if sum(needs(cells, height)) > place.width:
         height = 2.5  # numbers that touch the lines cannot be read
-    widths = widened([10.0] + [(width - 10.0) / count] * count, cells, height)
-    for fold in range(folds):
-        part = [cells[0], *cells[1 + fold * each : 1 + (fold + 1) * each]]
-        canvas.table(complex(place.x0 + fold * (width + FOLD), place.y1 - 9.0), widths, part, row, height)
+    widths = widened([10.0, *[(place.width / folds - 10.0) / count] * count] * folds, cells, height)
+    canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, height)
 
 
 STRUCTURE = 200.0
@@ -421,7 +383,7 @@ STRUCTURE = 200.0
 
 def structure_place(project: Project, view: ViewPlace) -> BorderNode:
     """A row for each group."""
-    return rows_needed(len(project.mechanism.groups) + 1, 26.0, (7.0, 7.0), (122.0, 170.0))
+    return table_node(len(project.mechanism.groups) + 1, 26.0, (7.0, 7.0), (122.0, 170.0))
 
 
 def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

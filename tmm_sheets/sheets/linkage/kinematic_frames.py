@@ -174,7 +174,6 @@ class VelocityLayout:
     shown: list[tuple[int, str]]
     mus: list[float]
     spans: list[Box]
-    rows: int
     per_row: int
     inside: Box
     scale: Scale
@@ -184,7 +183,7 @@ class VelocityLayout:
         """Index and label of each plan, its extent, its place, and the height left over there, mm; not all that is left."""
         rows = [slice(i, i + self.per_row) for i in range(0, len(self.shown), self.per_row)]
         heights = [max(s.height for s in self.spans[row]) + HEAD for row in rows]
-        spare = min((self.inside.height - sum(heights)) / self.rows, SPARE)
+        spare = min((self.inside.height - sum(heights)) / len(rows), SPARE)
         y = self.inside.y1
         for row, height in zip(rows, heights, strict=True):
             widths = [s.width + MARGIN for s in self.spans[row]]
@@ -237,7 +236,7 @@ def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str,
     mus = mus or [scale.mu] * len(shown)
     spans = _on_paper(real, mus, scale.mu)
     per_row = -(-len(shown) // RowChoice(spans).most_room(inside.width, inside.height)[1])
-    return VelocityLayout(shown, mus, spans, -(-len(shown) // per_row), per_row, inside, scale, every)
+    return VelocityLayout(shown, mus, spans, per_row, inside, scale, every)
 
 
 def _factors(real: Sequence[Box], analysed: int, inside: Box, need: float) -> list[float]:

@@ -12,7 +12,7 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.scale import handy
-from tmm_sheets.construction.step import Segment, symbol
+from tmm_sheets.construction.step import Segment, Step, symbol
 from tmm_sheets.numbers import is_zero
 from tmm_sheets.sheets.border_solver import Figure
 from tmm_sheets.sheets.linkage import link_marks
@@ -20,10 +20,9 @@ from tmm_sheets.sheets.player import extent, needed, once
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.step import Step
     from tmm_sheets.drawing.marks import Points
     from tmm_sheets.mechanism.groups.contexts import ForcePlan, Load
-    from tmm_sheets.mechanism.model import Leg, OuterReaction, StructuralGroup
+    from tmm_sheets.mechanism.model import OuterReaction, StructuralGroup
     from tmm_sheets.methods.linkage.forces import Kinetostatics
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.methods.linkage.zhukovsky import Lever
@@ -135,13 +134,6 @@ def _guided(project: Project, foot: str, reaction: OuterReaction, k: int) -> tup
         couples.append(Couple(f"M_{{{name}}}", at, couple, turning))
         offset = 0.0
     return Shown(f"F̅_{{{name}}}", at + u * offset, f if acts else 0j, step, forces.arms[f"h{name}"]), couples
-
-
-def normal_sign(project: Project, leg: Leg) -> str:
-    """Sign of the part of an outer reaction of a class III group that the moments about the special point give."""
-    m = project.mechanism
-    pair = pair_index(leg.link, m.guides[leg.guide].link if leg.guide else m.owner(leg.outer))
-    return f"F_{{{pair}}}" if leg.guide else f"F_{{{pair}}}^n"
 
 
 def _size(pos: Positions, k: int) -> float:

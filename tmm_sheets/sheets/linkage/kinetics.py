@@ -111,7 +111,7 @@ def lever_place(project: Project, view: ViewPlace) -> BorderNode:
 
 def results_place(project: Project, view: ViewPlace) -> BorderNode:
     """Four lines."""
-    return border_solver.rows(4, 0.0, (7.0, 9.0), (128.0, 170.0))
+    return border_solver.table_node(4, 0.0, (7.0, 9.0), (128.0, 170.0))
 
 
 def _place(project: Project, view: ViewPlace, figure: Figure, least: tuple[float, float], texts: Sequence[Any],

@@ -22,7 +22,7 @@ from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.numbers import clean, is_zero
 from tmm_sheets.sheets.border_solver import Form as Needed
 from tmm_sheets.sheets.components.listed import Form
-from tmm_sheets.sheets.linkage.kinetic_frames import BAR, arm_sign, balancing_sign, flat, normal_sign, on_lever
+from tmm_sheets.sheets.linkage.kinetic_frames import BAR, arm_sign, balancing_sign, flat, on_lever
 from tmm_sheets.sheets.linkage.link_marks import indexed
 from tmm_sheets.sheets.player import extent, once
 from tmm_sheets.words import SHEETS, marked, on_paper, tr
@@ -132,7 +132,9 @@ def group_equations(project: Project, g: StructuralGroup, guides: bool = False) 
     if (about := g.kind.about(g)) in pos.special:
         point, third = pos.special[about].step, pos.special[about].third
         if (normal := forces.about_special(point)) is not None:
-            sign = normal_sign(project, third)
+            m = project.mechanism
+            pair = pair_index(third.link, m.guides[third.guide].link if third.guide else m.owner(third.outer))
+            sign = f"F_{{{pair}}}" if third.guide else f"F_{{{pair}}}^n"
             length = abs(float(forces.arm_about(point, normal.args[2], normal).at(k)))
             yield from _solved(project, f"{{{about}}}", normal.args[0], (sign, arm_sign(sign), length), normal)
 

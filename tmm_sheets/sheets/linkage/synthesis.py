@@ -236,7 +236,7 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     _locus(false, there, pos.points[third.corner])
     link_marks.draw_guides(s, pos, g.links)
     link_marks.draw(s, pos, "main", g.links)
-    if np.abs(special.step.at(k) - _middle(pos, g, k)) < NEAR * _size(pos, g, k):
+    if _is_near(pos, g, k):
         _normals(s, pos, special)
     else:
         at = s.value(special.step)
@@ -274,13 +274,10 @@ def _points(pos: Positions, g: TriadGroup) -> Iterator[Step]:
     yield from (pos.points[name] for name in g.outer)
 
 
-def _middle(pos: Positions, g: TriadGroup, k: int) -> complex:
-    return complex(np.mean([step.at(k) for step in _points(pos, g)]))
-
-
-def _size(pos: Positions, g: TriadGroup, k: int) -> float:
+def _is_near(pos: Positions, g: TriadGroup, k: int) -> bool:
+    """Whether the special point of a group is drawn."""
     z = np.array([step.at(k) for step in _points(pos, g)])
-    return float(np.abs(z - z.mean()).max())
+    return bool(abs(pos.special[g.kind.about(g)].step.at(k) - z.mean()) < NEAR * np.abs(z - z.mean()).max())
 
 
 def _figure(project: Project, g: TriadGroup) -> Figure:
@@ -288,7 +285,7 @@ def _figure(project: Project, g: TriadGroup) -> Figure:
     pos, k = project.study.positions, project.force_index
     special = pos.special[g.kind.about(g)].step
     z = [complex(step.at(k)) for step in _points(pos, g)]
-    if abs(complex(special.at(k)) - _middle(pos, g, k)) < NEAR * _size(pos, g, k):
+    if _is_near(pos, g, k):
         z.append(complex(special.at(k)))
     z += [complex(step.at(k)) for steps in g.false_points(pos.false[g.name]) for step in steps if step.rule.gives == "point"]
     around = (10.0, -10.0, 8.0j, -10.0j)
