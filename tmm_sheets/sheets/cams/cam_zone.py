@@ -58,20 +58,22 @@ def fitted_tappet(cam: TappetCam, rays: bool, width: float, height: float) -> tu
 
     The finest scale factor counts, then the deepest zone.
     """
-    return min(((handy(max(real.width / width, real.height / height)), real) for real in _zones_of_tappet(cam, rays)),
-               key=lambda found: (found[0], found[1].y0))
+    mu, _, real = min([(handy(max(wide / width, high / height)), real.y0, real)
+                       for wide, high, real in _zones_of_tappet(cam, rays)])
+    return mu, real
 
 
 @lru_cache(maxsize=4)
-def _zones_of_tappet(cam: TappetCam, rays: bool) -> list[Box]:
-    """Rectangle round the ink of a tappet's zone, m, for each depth that is tried."""
+def _zones_of_tappet(cam: TappetCam, rays: bool) -> list[tuple[float, float, Box]]:
+    """Width, height and rectangle of the ink of a tappet's zone, m, for each depth that is tried."""
     z, stroke, slope = cam.zone, cam.law.stroke, tan(cam.zone.alpha)
     axis, apex = complex(z.apex.value), complex(z.plan["V"].value if "V" in z.plan else z.apex.value)
     ink = np.concatenate((z.curve.value.real, _beyond(z, rays).real, [t.real for t in _tops(z, apex, stroke)], [0.0]))
     left, right = float(ink.min()), float(ink.max())
     depths = [share * (stroke + z.s0) * min(1.0, 0.6 / slope) + max((apex - axis).imag, 0.0) for share in (0.3, 0.22, 0.15)]
-    return [Box(min(left, apex.real - depth * slope), apex.imag - depth, max(right, apex.real + depth * slope), stroke)
-            for depth in depths]
+    zones = [Box(min(left, apex.real - depth * slope), apex.imag - depth, max(right, apex.real + depth * slope), stroke)
+             for depth in depths]
+    return [(zone.width, zone.height, zone) for zone in zones]
 
 
 def stroke_in(cam: TappetCam, rays: bool, width: float, height: float) -> float:

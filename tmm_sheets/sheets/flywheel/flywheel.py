@@ -10,7 +10,7 @@ from __future__ import annotations
 from cmath import rect
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 from math import degrees, pi
 from string import ascii_lowercase
 from typing import TYPE_CHECKING, cast
@@ -524,8 +524,11 @@ def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
         canvas.circle(centre, radius, "main")
     if rim:
         canvas.circle(centre, d * k / 2, "centre")
-        for i in range(6):
-            _spoke(canvas, centre, rect(1, pi / 2 + i * pi / 3), hub, r - h * k, 0.05 * d * k)
+        wide, edge = 0.05 * d * k, r - h * k
+        for i, sign in product(range(6), (1, -1)):
+            u, start, end = rect(1, pi / 2 + i * pi / 3), sign * wide, sign * 0.75 * wide
+            a, z = complex((hub**2 - start**2) ** 0.5, start), complex((edge**2 - end**2) ** 0.5, end)
+            canvas.line(centre + u * a, centre + u * z, "main")
     half = b * k / 2
     for at, reach in ((centre, r + 4.0), (centre, 1j * (r + 4.0)), (side, half + 4.0)):
         canvas.line(at - reach, at + reach, "centre")
@@ -785,13 +788,6 @@ AB = 14.0
 """Distance of the dimension line of ab from the axis of the energy-mass diagram, mm."""
 BESIDE = 10.0
 """How near to a tangent the number of a point could be taken for that of the point of contact, mm."""
-
-
-@in_role("symbol")
-def _spoke(canvas: Canvas, centre: complex, u: complex, inner: float, outer: float, half: float) -> None:
-    for sign in (1, -1):
-        a, b = sign * half, sign * 0.75 * half
-        canvas.line(centre + u * complex((inner**2 - a**2) ** 0.5, a), centre + u * complex((outer**2 - b**2) ** 0.5, b), "main")
 
 
 @in_role("symbol")

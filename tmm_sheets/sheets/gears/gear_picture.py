@@ -341,7 +341,9 @@ class GearPicture:
             s.line("axis", centre + axis * (self.mm(wheel.rf) - 3 * out), centre + axis * (self.mm(wheel.ra) + 5 * out), "centre",
                    "axis")
         if wheel.ring:
-            self.rim(wheel)
+            pen, radius = self.stage.pen(f"rf{wheel.number}", "symbol"), self.mm(wheel.outside)
+            for start, end in arcs_inside(self.window.box, centre, radius):
+                pen.arc(centre, radius, start, end, "main")
         k = self.strip_tooth(wheel)
         outline = self.at(shape.copied(self.gear.working_strip(wheel, self.mu.real(STRIP)), k))
         half = len(outline) // 2
@@ -350,13 +352,6 @@ class GearPicture:
         ends = outline[0], outline[half - 1]
         for name, p in zip(("A", "B") if (wheel.number == 1) == (self.gear.driver == 1) else ("B", "A"), ends, strict=True):
             c.label(complex(p), f"{name}_{wheel.number}", away=p - centre - axis * abs(p - centre), height=3.5, gap=1.5)
-
-    def rim(self, ring: GearWheel) -> None:
-        """Outer circle of a ring's rim."""
-        centre, radius = self.of(f"O{ring.number}"), self.mm(ring.outside)
-        pen = self.stage.pen(f"rf{ring.number}", "symbol")
-        for start, end in arcs_inside(self.window.box, centre, radius):
-            pen.arc(centre, radius, start, end, "main")
 
     def strip_tooth(self, wheel: GearWheel) -> int:
         """The tooth whose working flank is hatched: the neighbour that stands clear of the mesh."""
@@ -398,16 +393,10 @@ class GearPicture:
         for a, b, text in ((e, f, f"s̅_{i} = {thickness}"), (p, q, f"p̅_{i} = {step}")):
             # the side of the centre is the left of a .. b
             a, b = (a, b) if side * (np.conj(b - a) * (centre - a)).imag > 0 else (b, a)
-            offset = self.clear_of_lines(a, b, inside + DIMENSION, text)
-            c.dimension(a, b, offset, text, factor=1e3 * self.mu.mu)
-
-    def clear_of_lines(self, a: complex, b: complex, offset: float, text: str) -> float:
-        """Offset of a dimension, this or a greater one, at which no line runs through its lettering.
-
-        Within a ring the tangents of its involute lie over the root circle of the pinion.
-        """
-        ink = InkIndex(m for n, m in enumerate(self.canvas.marks) if n >= self.first and n not in self.spokes)
-        return min((offset + further for further in np.arange(0.0, FURTHEST, 0.5)), key=lambda by: crossed(ink, a, b, by, text))
+            # No line may run through its lettering: in a ring the tangents of its involute lie over the pinion's root circle.
+            ink = InkIndex(m for n, m in enumerate(c.marks) if n >= self.first and n not in self.spokes)
+            met = {by: crossed(ink, a, b, by, text) for by in inside + DIMENSION + np.arange(0.0, FURTHEST, 0.5)}
+            c.dimension(a, b, min(met, key=lambda by: met[by]), text, factor=1e3 * self.mu.mu)
 
     def rotation(self, wheel: GearWheel) -> None:
         """Arrow of the angular velocity."""

@@ -14,7 +14,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_layout import spread
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.player import PlayerStage, placed, play, ratio, standard
+from tmm_sheets.sheets.player import PlayerStage, extent, placed, play, ratio, standard
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -65,7 +65,10 @@ def draw_scheme(train: Train, canvas: Canvas, box: Box, title: str) -> None:
     canvas.of = train.velocities.name
     views = TrainScheme(train)
     views.place(canvas, box, f"{train.data.part}-scheme", title)
-    views.draw()
+    with canvas.as_role("symbol"):
+        views.axial()
+        views.end_views()
+    views.velocities()
 
 
 def at_equal_angles(train: Train, stage: tuple[Mesh, ...]) -> int:
@@ -129,6 +132,7 @@ class TrainScheme:
         self.train = train
         self.edges, self.entered = columns_of(train)
         self.ends = {name: (side, sign) for name, side, sign in self.leading()}
+        self.tips = {step.name: complex(step.value) for step in train.velocities if step.rule.gives == "point"}
         above, beside = list[float](), list[float]()
         for m in train.meshes:
             above += [train.height(m.central) + side * train.radius(m.central, m) for side in (1, -1)]
@@ -181,13 +185,6 @@ class TrainScheme:
         return ((1, -1)[self.shaft(satellite) % 2],) if sum(s[0].carrier == own.carrier for s in self.train.stages) > 1 else \
             (1, -1) if self.opposite(satellite) else (1,)
 
-    def draw(self) -> None:
-        """Draw the three views."""
-        with self.canvas.as_role("symbol"):
-            self.axial()
-            self.end_views()
-        self.velocities()
-
     def fitted(self, width: float, height: float) -> Scale:
         """The scale with which they fit a place with their title."""
         return standard((self.top + self.bottom, height - OVER), (2 * self.side, width - self.beside(NARROWEST)))
@@ -208,15 +205,14 @@ class TrainScheme:
             right -= spare
             between = BETWEEN[1]
         left = box.x0 + self.width + between
-        speeds = [complex(step.value).real for step in self.train.velocities if step.rule.gives == "point"]
-        room = right - 2 * reach - between - left
-        self.speed = Scale("μ_V", handy((max(speeds) - min(speeds)) / (min(room, self.pictured()) - 24.0)), tr("(m/s)/mm"))
+        room, real = right - 2 * reach - between - left, extent([[*self.tips.values()]])
+        self.speed = Scale("μ_V", handy(real.width / (min(room, self.pictured()) - 24.0)), tr("(m/s)/mm"))
         canvas.scales[self.train.velocities.name] = self.speed
         self.box = canvas.title(box, title, f"{ratio(self.mu)};  {self.speed}")
         spare = self.box.height - (self.top + self.bottom) / self.mu.mu
         self.axis = self.box.y0 + max(spare / 2, spare - UNDER) + self.bottom / self.mu.mu
         self.front = complex(right - reach, self.axis)
-        self.zero = complex(left + (room - self.speed.mm(max(speeds) + min(speeds))) / 2, self.axis)
+        self.zero = complex(left + room / 2 - self.speed.mm(real.centre.real), self.axis)
 
     def stretch(self, share: float) -> None:
         """Draw the axial view so many times wider, as far as that looks well."""
@@ -225,8 +221,7 @@ class TrainScheme:
 
     def pictured(self) -> float:
         """Width of use to the picture of velocities, mm: lines less steep than 45 degrees are hard to draw others parallel to."""
-        heights = [complex(step.value).imag for step in self.train.velocities if step.rule.gives == "point"]
-        return max(WIDEST, float(self.mu.mm(max(heights) - min(heights)))) + 24.0
+        return max(WIDEST, float(self.mu.mm(extent([[*self.tips.values()]]).height))) + 24.0
 
     def y(self, height: float) -> float:
         """Ordinate on the sheet of a height over the main axis."""
@@ -466,13 +461,11 @@ class TrainScheme:
 
     def velocities(self) -> None:
         """Lines of the links over the heights of their points."""
-        plan = self.train.velocities
-        ends = {step.name: complex(step.value) for step in plan if step.rule.gives == "point"}
-        low, high = (self.y(f(v.imag for v in ends.values())) for f in (min, max))
-        s = placed(self.canvas, plan, self.zero, (self.speed.mu, self.mu.mu))
+        low, high = (self.y(f(v.imag for v in self.tips.values())) for f in (min, max))
+        s = placed(self.canvas, self.train.velocities, self.zero, (self.speed.mu, self.mu.mu))
         s.line("O", complex(self.zero.real, low - AXIS), complex(self.zero.real, high + AXIS), "axis", "axis")
-        self.heights(s, [name for name in ends if name[0].isupper()])
-        self.vectors(s, {name: value for name, value in ends.items() if name[0].islower()})
+        self.heights(s, [name for name in self.tips if name[0].isupper()])
+        self.vectors(s, {name: value for name, value in self.tips.items() if name[0].islower()})
         self.lines(s)
 
     def vectors(self, s: PlayerStage, ends: Mapping[str, complex]) -> None:
