@@ -232,9 +232,8 @@ class Upright:
     of: Callable[[Project, dict[str, Any]], tuple[str, Rows]]
     folds: tuple[int, ...] = (1,)
 
-    def _forms(self, project: Project, options: dict[str, Any]) -> Iterator[tuple[tuple[float, float], Rows]]:
+    def _forms(self, title: str, rows: Rows, options: dict[str, Any]) -> Iterator[tuple[tuple[float, float], Rows]]:
         """Places that it can do with, the largest first, each at least as wide as the longest word of the title, and its cells."""
-        title, rows = self.of(project, options)
         word = max(letter(word, 3.5).width for word in title.split(" "))
         cells = [folded(rows, count) for count in self.folds] if min(len(rows), len(rows[0])) > 1 else []
         for (row, height, gap), some in product(TRIED, cells):
@@ -244,12 +243,12 @@ class Upright:
 
     def sizes(self, project: Project, canvas: Canvas, options: dict[str, Any]) -> Sizes:
         """Places that it can do with."""
-        return [size for size, _ in self._forms(project, options)]
+        return [size for size, _ in self._forms(*self.of(project, options), options)]
 
     def __call__(self, project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
         """Draw it."""
         title, rows = self.of(project, options)
-        forms = self._forms(project, options) if len(self.folds) > 1 else iter(())
+        forms = self._forms(title, rows, options) if len(self.folds) > 1 else iter(())
         draw_upright(canvas, box, title, next((some for (width, height), some in forms
                                                if width <= box.width + 1e-6 and height <= box.height + 1e-6), rows))
 

@@ -55,18 +55,18 @@ def _extent(gear: GearPair) -> tuple[float, float]:
     return max((rack.shift + wheel.addendum) * gear.m, wheel.ra - rack.r), rack.r - wheel.rf + BELOW * gear.m
 
 
-def _fitted(gear: GearPair, width: float, height: float) -> Scale:
-    """Scale of the picture in a place of this size, mm."""
-    return standard((PITCHES * pi * gear.m, width - LEFT - MARGIN), (sum(_extent(gear)), height - OVER))
+def _fitted(gear: GearPair, high: float, width: float, height: float) -> Scale:
+    """Scale of the picture, so ``high`` in m, in a place of this size, mm."""
+    return standard((PITCHES * pi * gear.m, width - LEFT - MARGIN), (high, height - OVER))
 
 
 def place(project: Project, view: ViewPlace) -> BorderNode:
     """A pitch and a half of the rack with what it cuts."""
-    gear = project.gear
+    gear, high = project.gear, sum(_extent(project.gear))
 
     def drawn(width: int, height: int) -> float:
-        mu = _fitted(gear, width, height).mu
-        return min(width, 1.6 * PITCHES * pi * gear.m / mu + LEFT + MARGIN) * min(height, USUAL * sum(_extent(gear)) / mu + OVER)
+        mu = _fitted(gear, high, width, height).mu
+        return min(width, 1.6 * PITCHES * pi * gear.m / mu + LEFT + MARGIN) * min(height, USUAL * high / mu + OVER)
 
     return stepped(view, (120.0, 110.0), drawn)
 
@@ -90,7 +90,7 @@ class _RackPicture:
         self.wheel = gear.pinion
         self.rack = self.wheel.rack
         top, bottom = _extent(gear)
-        scale = canvas.scales["gear-rack"] = _fitted(gear, box.width, box.height)
+        scale = canvas.scales["gear-rack"] = _fitted(gear, top + bottom, box.width, box.height)
         inner = canvas.title(box, tr("Generation of wheel {wheel} by the rack").format(wheel=self.wheel.number), ratio(scale))
         # What height is left goes to the wheel where its centre comes to stand on the picture: a body without it is bare paper.
         self.pole = complex((inner.x0 + LEFT + inner.x1 - MARGIN) / 2, inner.y1 - NOTES - top / scale.mu)

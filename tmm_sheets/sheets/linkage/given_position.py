@@ -131,7 +131,8 @@ UNITS = {"deg": "°", **{unit.replace(" ", "").replace("·", "").replace("²", "
 """How the units of a task are written on paper, by their common spelling; others stand as they are."""
 
 
-def _given(project: Project, options: dict[str, Any]) -> tuple[str, Rows]:
+@once
+def _given(project: Project) -> tuple[str, Rows]:
     """What the task gives as it prints it; nothing where a mechanism has no length of its own.
 
     Where the file does not say: where the fixed hinges are, lengths in the order in which the links are put together, then masses
@@ -142,7 +143,7 @@ def _given(project: Project, options: dict[str, Any]) -> tuple[str, Rows]:
     return title, [[tr("Quantity"), tr("Value")], *map(list, given_quantities(project))]
 
 
-links = listed.Upright(_given, folds=(1, 2, 3))
+links = listed.Upright(lambda project, options: _given(project), folds=(1, 2, 3))
 """The table of what the task gives."""
 
 
