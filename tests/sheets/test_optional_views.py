@@ -245,6 +245,18 @@ def test_what_is_offered_is_drawn_where_there_is_room():
     assert sheet.crowded == ()
 
 
+@pytest.mark.parametrize(("name", "apart"), [("tests/projects/planer.toml", True), ("lugansk/shaper", False)])
+def test_equations_without_room_under_their_figures_stand_apart(name, apart):
+    sheet = composed(Project(read(name)), 1)
+    assert any(part.draw == "kinetics.moments" for part in sheet.parts) == apart
+    assert not any(group.text == tr("in the note") for group in sheet.groups)
+
+
+def test_a_point_k_has_its_letter_beside_the_end_of_a_coriolis_segment():
+    plan = Project(read("tests/projects/sieve.toml")).study.accelerations.plan
+    assert (plan["k"].symbol, plan["k′"].symbol) == ("k1", "k")
+
+
 def test_points_of_a_train_run_as_the_wheel_they_are_on_turns():
     """Omega r of the wheels with axes that stand, and of the carrier: 2, 3, H and 5 of the hoist in turn; 5 by Willis, by hand."""
     p = Project(read("tests/projects/hoist.toml"))

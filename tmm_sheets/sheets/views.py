@@ -89,7 +89,7 @@ MODULES = {name: module for module, names in {
     "linkage.details": "details", "linkage.diagrams": "diagrams hodograph load_diagram",
     "linkage.friction": "friction",
     "linkage.given_position": "given_data given_position position_tables", "linkage.kinematic_frames": "kinematic_frames",
-    "linkage.kinematics": "kinematics", "linkage.kinetics": "kinetics",
+    "linkage.kinematics": "kinematics", "linkage.kinetics": "kinetics", "linkage.moments": "moments",
     "linkage.synthesis": "false_positions synthesis",
 }.items() for name in names.split()}
 """Modules of the functions below by the first part of their names, which arrangements keep where a module has another name."""
@@ -142,6 +142,7 @@ VIEWS = {view.draw: view for view in (
              every="kinetics.groups"),
     ViewKind("kinetics.groups", "forces", parts="kinetics.each_group", picture="force plans"),
     ViewKind("kinetics.lever", "forces", place="kinetics.lever_place", picture="forces", read="composition.lever"),
+    ViewKind("kinetics.moments", "forces", by="moments.owed", sizes="moments.owed.sizes"),
     ViewKind("kinetics.results", "forces", place="kinetics.results_place", name=marked("Results of the force analysis")),
     ViewKind("position_tables.reactions", "forces", sizes="position_tables.reactions.sizes",
              name=marked("Table of reactions at all positions")),

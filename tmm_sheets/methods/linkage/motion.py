@@ -419,14 +419,18 @@ def _of_crank(acc: Accelerations, epsilon1: Any) -> None:
 
 
 def _number_alike(acc: Accelerations) -> None:
-    """Ends of the normal and of the Coriolis segments are numbered in their order where there are several, around other names."""
+    """Number the ends of the normal and Coriolis segments where there are several, around other names.
+
+    A single one is numbered beside a point of its letter, which has this to itself: a point K is k, as in the velocity polygon.
+    """
     plan, points = acc.plan, tuple(acc.points.values())
     for letter, rule in (("n", NORMAL), ("k", CORIOLIS)):
         alike = [step for step in plan if step.rule is rule and step.name.startswith(letter) and step not in points]
         others = {step.symbol or step.name for step in plan if step not in alike}
         free = (name for i in count(1) if (name := f"{letter}{i}") not in others)
-        if len(alike) > 1:
-            for step, name in zip(alike, free, strict=False):
+        own = [step for step in points if step.name == f"{letter}′"]
+        if len(alike) > 1 or own:
+            for step, name in (*zip(alike, free, strict=False), *((step, letter) for step in own)):
                 plan.lettered(step, name)
 
 

@@ -33,7 +33,7 @@ def formula_layouts(law: PositionFunction) -> Iterator[Form]:
             yield Form(columns, height, step, least=letter(tr(TITLE), titled).width)
 
 
-equations = Formulas(TITLE, "cam-motion", lambda project: formula_layouts(project.cam.law))
+equations = Formulas(TITLE, "cam-motion", lambda project, canvas: formula_layouts(project.cam.law))
 """Displacement and both derivatives on the rise and on the return."""
 
 

@@ -8,7 +8,7 @@ their scale factors: first all reach their floors, then the lowest grows as long
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import floor, inf, log10
@@ -148,6 +148,12 @@ def column(values: Sequence[float] | Floats, digits: int = 4, least: int = 0) ->
     largest = float(np.max(np.abs(values)))
     decimals = max(least, digits - 1 - floor(log10(largest))) if largest > 0 else 0
     return [fixed(float(v), decimals) for v in values]
+
+
+def rows(positions: Iterable[tuple[int, str]], columns: Sequence[tuple[Any, ...]]) -> list[list[str]]:
+    """Heads of some columns, and a row for each position with its number and its label; of a column its significant digits last."""
+    cells = [column(values, *digits) for _, values, *digits in columns]
+    return [[tr("No."), *(name for name, *_ in columns)], *([label, *(column[i] for column in cells)] for i, label in positions)]
 
 
 def row(name: str, values: Sequence[float] | Floats) -> list[str]:

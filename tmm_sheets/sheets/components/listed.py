@@ -12,7 +12,6 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken, letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_layout import CLEAR, GAP, LEADING, LEAST, TOGETHER, Heading, heading, needs, parted, size_in, widened
-from tmm_sheets.sheets.player import once
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -88,6 +87,10 @@ class Form(NamedTuple):
         """What it takes, mm."""
         return max(sum(self.widths) - APART, self.least) + 6.0, self.head + self.pitch * max(map(len, self.columns))
 
+    def fits(self, box: Box) -> bool:
+        """Whether a place has room for it."""
+        return self.size[0] <= box.width + 1e-6 and self.size[1] <= box.height + 1e-6
+
     @property
     def pitch(self) -> float:
         """Distance of the lines, mm: no exponent stands in an index of the line above it."""
@@ -104,28 +107,21 @@ class Formulas:
 
     title: str
     of: str
-    forms: Callable[[Project], Iterable[Form]]
+    forms: Callable[[Project, Canvas], Iterable[Form]]
 
     def sizes(self, project: Project, canvas: Canvas, options: dict[str, Any]) -> Sizes:
         """Places that it can do with."""
-        return [size for size, _ in _sized(project, self)]
+        return [form.size for form in self.forms(project, canvas)]
 
     def __call__(self, project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
         """Draw it."""
+        form = next(form for form in self.forms(project, canvas) if form.fits(box))
         canvas.of = self.of
-        high, form = next((size[1], form) for size, form in _sized(project, self)
-                          if size[0] <= box.width + 1e-6 and size[1] <= box.height + 1e-6)
-        left = canvas.title(box, tr(self.title), spare=box.height - high)
+        left = canvas.title(box, tr(self.title), spare=box.height - form.size[1])
         x = box.x0 + 3.0
         for lines, width in zip(form.columns, form.widths, strict=True):
             canvas.lines(complex(x, left.y1 - 0.8 * form.pitch), lines, form.pitch, form.height)
             x += width
-
-
-@once
-def _sized(project: Project, view: Formulas) -> list[tuple[tuple[float, float], Form]]:
-    """The forms of a view of lines with the places that they take."""
-    return [(form.size, form) for form in view.forms(project)]
 
 
 @dataclass(frozen=True)
@@ -181,11 +177,6 @@ def table_in(canvas: Canvas, left: Box, rows: Sequence[Sequence[str]], tallest: 
     if len(widths) < count:
         widths = [*widths, *[(left.width - sum(widths)) / (count - len(widths))] * (count - len(widths))]
     return canvas.table(complex(left.x0, left.y1), widened(widths, rows, height), rows, row, height, header)
-
-
-def over_positions(labels: Sequence[str], columns: Sequence[tuple[str, Sequence[str]]]) -> Rows:
-    """Rows of a table with a column of numbers for each quantity, named at its head, and a row for each position."""
-    return [[tr("No."), *(name for name, _ in columns)], *zip(labels, *(cells for _, cells in columns), strict=True)]
 
 
 TRIED = (7.0, 3.5, 4.0), (6.4, 3.5, 2.0), (7.0, 2.5, 2.5), (5.6, 2.5, 2.0), (4.6, 2.5, 2.0)

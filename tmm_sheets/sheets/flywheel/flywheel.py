@@ -608,9 +608,8 @@ def _works(project: Project, options: graphs.Options) -> tuple[str, listed.Rows]
         graphs.row(tr("A_{index}, J").format(index=constant), fw.total_plan["A_K"].value),
         graphs.row(tr("ΔE, J"), fw.delta_E),
     ]
-    columns = [([*name.rsplit(", ", 1)], numbers) for name, *numbers in quantities]
-    return title.replace(" = ", f"{TOGETHER}={TOGETHER}"), listed.over_positions(["", *fw.labels], [
-        (name, [unit, *numbers]) for (name, unit), numbers in columns])
+    columns = [[*name.rsplit(", ", 1), *numbers] for name, *numbers in quantities]
+    return title.replace(" = ", f"{TOGETHER}={TOGETHER}"), [*zip([tr("No."), "", *fw.labels], *columns, strict=True)]
 
 
 work_table = listed.Upright(_works)

@@ -178,16 +178,16 @@ def _found(project: Project, options: graphs.Options) -> tuple[str, listed.Rows]
     fw = procedure(project)
     varying, _ = flywheel.indices(fw)
     change, second, first, sign = _signs(options)
-    columns = [
+    columns: list[tuple[str, str, *tuple[object, ...]]] = [
         (tr("M_{index}^{{red}}").format(index=varying), tr("N·m"), fw.M_reduced), (f"A_{varying}", tr("J"), fw.work),
         (change, tr("J"), fw.delta_E), (sign, tr("kg·m^2"), fw.J_reduced), (second, tr("J"), fw.T_second),
         (first, tr("J"), fw.T_first),
-        ("y_ω", tr("mm"), fw.speed_plan["y"].value), ("ω_1", tr("rad/s"), fw.omega),
+        ("y_ω", tr("mm"), fw.speed_plan["y"].value),
+        ("ω_1", tr("rad/s"), fw.omega, 5),  # it hardly changes: a digit more shows it
         ("ε_1", tr("rad/s^2"), fw.position_acceleration["ε1"].value),
     ]
-    # The angular velocity hardly changes: a digit more shows it.
-    return tr("Results by positions"), listed.over_positions(["", *fw.labels], [
-        (name, [unit, *graphs.column(values, 5 if name == "ω_1" else 4)]) for name, unit, values in columns])
+    heads, *rows = graphs.rows(enumerate(fw.labels), [(name, *numbers) for name, _, *numbers in columns])
+    return tr("Results by positions"), [heads, ["", *(unit for _, unit, *_ in columns)], *rows]
 
 
 position_table = listed.Upright(_found)

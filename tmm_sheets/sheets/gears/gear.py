@@ -403,7 +403,7 @@ def _forms(plan: Plan) -> Iterator[Form]:
 
 
 of_pair = Formulas(marked("The gear pair in numbers"), "gear-geometry",
-                   lambda project: _forms(project.gear.geometry))
+                   lambda project, canvas: _forms(project.gear.geometry))
 """Angle of engagement, distances, pitches and contact ratio; radii and thicknesses of the wheels in numbers."""
 
 

@@ -305,8 +305,7 @@ def _in_positions(project: Project, options: dict[str, Any]) -> tuple[str, liste
     columns = [(tr("F_{{{index}}}, N").format(index=index), np.abs(np.broadcast_to(forces.reactions[f"F{index}"].value, (n,))))
                for index in of.pairs]
     columns += [(f"{sign}, {unit}", np.broadcast_to(drive, (n,))), (tr("N_f, W"), np.broadcast_to(of.total.value, (n,)))]
-    return tr("Reactions with friction in all positions"), listed.over_positions(study.labels, [
-        (name, graphs.column(values)) for name, values in columns])
+    return tr("Reactions with friction in all positions"), graphs.rows(enumerate(study.labels), columns)
 
 
 positions = listed.Upright(_in_positions)

@@ -125,9 +125,9 @@ def _signed(step: Step | None, k: int, kind: float, sense: float) -> str:
     return "−" if step is None else number(sense * float(np.real(step.at(k))), kind=kind)
 
 
-UNITS = {"deg": "°", **{unit.replace(" ", "").replace("·", "").replace("²", "2"): unit for unit in (
+UNITS = {"deg": "°", "rad/s2": marked("s^{−2}"), **{unit.replace(" ", "").replace("·", "").replace("²", "2"): unit for unit in (
     marked("m"), marked("mm"), marked("cm"), marked("kg"), marked("kg·m²"), marked("N"), marked("kN"), marked("N·m"),
-    marked("kN·m"), marked("rad/s"), marked("rpm"), marked("m/s"), marked("MPa"), marked("kW"))}}
+    marked("kN·m"), marked("rad/s"), marked("rpm"), marked("m/s"), marked("m/s²"), marked("MPa"), marked("kW"))}}
 """How the units of a task are written on paper, by their common spelling; others stand as they are."""
 
 
@@ -160,7 +160,8 @@ def given_quantities(project: Project) -> Iterator[tuple[str, str]]:
     of_groups = [(*g.lengths, g.offset, *getattr(g, "sides", ()), *(leg.length for leg in getattr(g, "legs", ())))
                  for g in m.groups]
     lengths: list[Any] = [m.crank.length, *chain(*of_groups), *(p.distance for p in m.points)]
-    given_of_input: list[Any] = [] if m.drive is None else [*m.drive.place, m.drive.speed, m.drive.acceleration]
+    driving = m.drive or m.crank
+    given_of_input: list[Any] = [*getattr(driving, "place", ()), driving.speed, driving.acceleration]
     # Of a cylinder it is a segment of the plans that no two points of the mechanism tell.
     drawn = {"m/s": " = |pr|·μ_V"} if m.drive is not None and not m.drive.slides else {}
     for name, at in ((name, at) for name, at in m.fixed.items() if name in link_marks.drawn_points(project.study.positions)):
@@ -169,13 +170,12 @@ def given_quantities(project: Project) -> Iterator[tuple[str, str]]:
                 yield f"{axis}_{{{name}}}, {tr('m')}", number(value)
     links = sorted(m.links.values(), key=lambda link: (len(link.name), link.name))
     of_links = [getattr(link, name) for name in ("mass", "inertia") for link in links]
-    units = {"kg": tr("kg"), "kg*m2": tr("kg·m²"), "m": tr("m"), "m/s": tr("m/s"), "m/s2": tr("m/s²")}
     for n, value in enumerate((*lengths, *given_of_input, *of_links)):
         given = getattr(value, "step", value)  # one that a synthesis found has the letters of its step
         if value and getattr(given, "symbol", ""):
             # The other way along its line is no length.
-            unit = "m" if n < len(lengths) else given.unit
-            yield f"{given.symbol}{drawn.get(unit, '')}, {units[unit]}", number(abs(float(value)))
+            unit = "m" if n < len(lengths) else given.unit.replace("*", "")
+            yield f"{given.symbol}{drawn.get(unit, '')}, {tr(UNITS[unit])}", number(abs(float(value)))
 
 
 MOST = 14
@@ -209,9 +209,7 @@ def of_pairs(project: Project) -> Columns:
 def _cells(project: Project, columns: Columns) -> Rows:
     """Heads, and a row for each drawn position; no column of too many, or of such that have no number somewhere."""
     told = columns if len(columns) <= MOST and all(np.isfinite(values).all() for _, values in columns) else []
-    numbers = [graphs.column(values) for _, values in told]
-    return [[tr("No."), *(name for name, _ in told)],
-            *([label, *(column[i] for column in numbers)] for i, label in project.cycle.drawn)]
+    return graphs.rows(project.cycle.drawn, told)
 
 
 reactions = listed.Upright(lambda project, options: (tr("Reactions in the pairs, N"), _cells(project, of_pairs(project))))

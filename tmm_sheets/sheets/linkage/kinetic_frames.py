@@ -231,10 +231,10 @@ def crank_scheme(project: Project, k: int) -> Figure:
     """The initial link's scheme, the arrows of rotation with their signs about it."""
     c, driver, pos, shown = project.mechanism.crank, project.driver, project.study.positions, on_crank(project, k)
     pivot, ends = complex(pos.points[c.pivot].at(k)), [complex(pos.points[name].at(k)) for name in link_marks.crank_pins(pos)]
-    wheel = [] if driver is None or driver.wheel is None else [pivot + driver.wheel[0] * z for z in (1, -1, 1j, -1j)]
+    wheel = [] if driver is None or driver.wheel is None else [(pivot + driver.wheel[0] * z, 0j) for z in (1, -1, 1j, -1j)]
     outermost = [couple_radius(n) for n, couple in couples_of(project, c.link) if hinge_of(project, couple) is None]
     turning = (max(outermost, default=10.0 if driver is not None else 24.0) + 8.0) * clear(pivot, ends, shown)
-    around = _loaded([pivot, *ends, *(force.at for force in shown), *wheel], shown, pivot, [(pivot, turning)])
+    around = _loaded([pivot, *ends, *(force.at for force in shown)], shown, pivot, [(pivot, turning), *wheel])
     return Figure("scheme-crank", "μ_l", tr("m/mm"), *around, CRANK, finest=max(abs(end - pivot) for end in ends) / LONGEST_CRANK)
 
 

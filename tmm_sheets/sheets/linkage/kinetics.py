@@ -19,7 +19,7 @@ from tmm_sheets.drawing.text_layout import TOGETHER, wrapped
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, decimals_for, fixed, is_zero, number
 from tmm_sheets.sheets import border_solver
-from tmm_sheets.sheets.border_solver import UNDER, BorderNode, Figure, Need, leaf
+from tmm_sheets.sheets.border_solver import BorderNode, Figure, Need, leaf
 from tmm_sheets.sheets.components import flat_crossings, listed
 from tmm_sheets.sheets.linkage import link_marks, moments
 from tmm_sheets.sheets.linkage.kinetic_frames import (
@@ -213,13 +213,7 @@ def _scheme(project: Project, canvas: Canvas, box: Box, under: Box | None, g: St
     for c in couples:
         _turning(s, frame(c.at), 10.0, -1 - 0.4j, c)
     _link_couples(project, s, drawn)
-    _equations(canvas, figure.taken(frame, box), under, moments.of_group(project, g))
-
-
-def _equations(canvas: Canvas, box: Box, under: Box | None, texts: Iterable[list[str]], of: str = "moments") -> None:
-    """Equations that are read from a view, in what it leaves free ``under`` what of its ``box`` it takes."""
-    if under is not None and not moments.draw(canvas, under._replace(y1=box.y0 - UNDER), texts, of):
-        canvas.note(box, tr("{equations}: in the note").format(equations=tr(moments.TITLES[of])))
+    moments.draw(canvas, figure.taken(frame, box), under, moments.of_group(project, g))
 
 
 def _link_couples(project: Project, s: PlayerStage, drawn: Iterable[link_marks.Shape]) -> None:
@@ -440,13 +434,11 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     moment = None if driver is not None else forces.balancing
     if moment is not None and not is_zero(moment.at(k), forces.moment_size(k)):
         _turning(s, s.at(centre), 24.0, away, Couple(balancing_sign(project), 0j, float(moment.at(k)), moment))
-    for line in (*jumps(project, [c.link]), *([] if plans else [tr("There are no forces in this position")])):
+    couples = list(_crank_couples(project, s, s.at(centre), away))
+    moments.draw(canvas, figure.taken(frame, left), under, texts)
+    for line in (*jumps(project, [c.link]), *([] if texts else couples),
+                 *([] if plans else [tr("There are no forces in this position")])):
         canvas.note(left, line)
-    said = "; ".join(_crank_couples(project, s, s.at(centre), away))
-    low = figure.taken(frame, left)
-    _equations(canvas, low, under, texts)
-    if not texts:
-        canvas.text(complex(low.centre.real, low.y0), said, size_for([said], low.width - 4.0, 3.5), "centre")
     for fp, place in zip(plans, places, strict=True):
         force_plan_drawn(project, canvas, place, fp, k)
 
@@ -490,8 +482,8 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         s.letters(lv.contact, lv.contact.name, gap=1.2)
     draw_arms(s, 0j, shown, points=[complex(s.at(step)) for step in lv.points.values()])
     draw_forces(s, shown)
-    _equations(canvas, figure.taken(frame, box), next(iter(under), None), moments.at_scale(project, frame.scale),
-               "moments of the lever")
+    moments.draw(canvas, figure.taken(frame, box), next(iter(under), None), moments.at_scale(project, frame.scale),
+                 "moments of the lever")
 
 
 def _turned_letters(s: PlayerStage, turned: PlayerStage, points: Mapping[str, Step], vectors: list[Segment]) -> None:
@@ -531,8 +523,7 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
             [tr("Difference, %"), number(difference, 2, 100.0)]]
     width = min(box.width, 210.0)
     listed.table_in(canvas, box, rows, 9.0, [width * 0.66, width * 0.34])
-    if force and kinetic < 0 and project.mechanism.drive is not None:
-        canvas.note(box, tr("{quantity} < 0: it holds the input back").format(quantity=sign))
-    elif force and kinetic < 0:
-        canvas.note(box, tr("{quantity} < 0: the mate holds the wheel back, in truth by the other flanks of its teeth").format(
-            quantity=sign))
+    if force and kinetic < 0:
+        said = tr("{quantity} < 0: it holds the input back") if project.mechanism.drive is not None else \
+            tr("{quantity} < 0: the mate holds the wheel back, in truth by the other flanks of its teeth")
+        canvas.note(box, said.format(quantity=sign))

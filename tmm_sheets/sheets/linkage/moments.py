@@ -18,10 +18,11 @@ from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, symbol
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import broken
+from tmm_sheets.drawing.lettering import broken, letter
 from tmm_sheets.numbers import clean, is_zero
+from tmm_sheets.sheets.border_solver import UNDER
 from tmm_sheets.sheets.border_solver import Form as Needed
-from tmm_sheets.sheets.components.listed import Form
+from tmm_sheets.sheets.components.listed import Form, Formulas
 from tmm_sheets.sheets.linkage.kinetic_frames import BAR, arm_sign, balancing_sign, flat, on_lever
 from tmm_sheets.sheets.linkage.link_marks import indexed
 from tmm_sheets.sheets.player import extent, once
@@ -39,6 +40,8 @@ LETTERS = ((3.5, 6.0), (2.5, 4.5))
 """Heights of their letters and distances of their lines that are tried, mm; room is made for the first."""
 EDGES = 6.0
 """What a place has beside them, both sides together, mm."""
+HEAD = 12.0
+"""What their title takes where they stand apart from the figures, mm."""
 FEWER = 1.2
 """What a figure over every text that says less counts for."""
 
@@ -100,17 +103,38 @@ def room(project: Project, of: Callable[..., list[list[str]]], *about: Any) -> l
         return [Needed(*Form([[*lines]], height, step, 0.0).size, FEWER ** n) for n, lines in dict.fromkeys(parts)]
 
 
-def draw(canvas: Canvas, box: Box, texts: Iterable[list[str]], of: str) -> bool:
-    """Write equations in a place under their view, the first of the texts that it has room for; False for none."""
-    for (height, step), lines in product(LETTERS, texts):
-        form = Form([[part for line in lines for part in broken(line, box.width - EDGES, height)]], height, step, 0.0)
-        if form.size[0] <= box.width + 1e-6 and form.size[1] <= box.height + 1e-6:
-            canvas.begin(box, tr(TITLES[of]))
-            canvas.of = of
-            at = complex(box.centre.real - form.size[0] / 2 + EDGES / 2, box.y1 - 0.8 * form.pitch)
-            canvas.lines(at, form.columns[0], form.pitch, form.height)
-            return True
-    return False
+def draw(canvas: Canvas, box: Box, under: Box | None, texts: Sequence[list[str]], of: str = "moments") -> None:
+    """Write equations in what a figure leaves free ``under`` what of its ``box`` it takes: the first of the texts with room there.
+
+    What the fullest of them says besides is owed to the sheet.
+    """
+    if under is None:
+        return
+    place = under._replace(y1=box.y0 - UNDER)
+    form, said = next((found for found in _forms(texts, [place.width - EDGES]) if found[0].fits(place)), (None, list[str]()))
+    canvas.owed += [line for line in texts[0] if line not in said]
+    if form is not None:
+        canvas.begin(place, tr(TITLES[of]))
+        canvas.of = of
+        at = complex(place.centre.real - form.size[0] / 2 + EDGES / 2, place.y1 - 0.8 * form.pitch)
+        canvas.lines(at, form.columns[0], form.pitch, form.height)
+
+
+def _forms(texts: Sequence[list[str]], widths: Iterable[float]) -> Iterator[tuple[Form, list[str]]]:
+    """Forms of some texts broken at these widths, mm, without room for a title: the largest letters first."""
+    for (height, step), lines, width in product(LETTERS, texts, widths):
+        yield Form([[part for line in lines for part in broken(line, width, height)]], height, step, 0.0), lines
+
+
+def _apart(canvas: Canvas) -> Iterator[Form]:
+    """Forms of the equations that had no room under their figures, then of where they are read; none where all stand there."""
+    least = letter(tr(TITLES["moments"]), 5.0).width
+    for text in [canvas.owed, [tr("in the note")]] if canvas.owed else []:
+        yield from (form._replace(head=HEAD, least=least) for form, _ in _forms([text], WIDTHS))
+
+
+owed = Formulas(TITLES["moments"], "moments", lambda project, canvas: _apart(canvas))
+"""The equations that had no room under their figures."""
 
 
 def group_equations(project: Project, g: StructuralGroup, guides: bool = False) -> Iterator[str]:
@@ -140,17 +164,20 @@ def group_equations(project: Project, g: StructuralGroup, guides: bool = False) 
 
 
 def crank_equation(project: Project) -> Iterator[str]:
-    """The equation of the balancing moment."""
-    k, forces, crank = project.force_index, project.study.forces, project.mechanism.crank
-    if project.driver is None and forces.balancing is not None:
-        total = forces.balancing.args[0]
-        terms = list(_terms(project, total)) if np.isfinite(total.at(k)) else []
-        if terms:
-            name, moment = balancing_sign(project), float(project.study.balance["M"].at(k))
-            sense = -crank.sense if moment < 0 else crank.sense
-            yield tr("ΣM_{centre} = {sum} = 0").format(centre=indexed(crank.pivot), sum=_sum([Term(name, sense, ()), *terms]))
-            solved = [term._replace(sign=-sense * term.sign) for term in terms]
-            yield f"{_worked_out(solved, Quantity(name, abs(moment), 'N*m'))} {tr(SENSES[moment < 0])}"
+    """The equation of the balancing moment, or of the force of a gear."""
+    k, forces, crank, name = project.force_index, project.study.forces, project.mechanism.crank, balancing_sign(project)
+    if forces.balancing is None or (project.driver is not None and project.driver.wheel is None):
+        return
+    total, *acting = forces.balancing.args
+    if project.driver is not None:
+        arm = abs(float(forces.arm_about(acting[0], acting[1], forces.balancing).at(k)))
+        yield from _solved(project, indexed(crank.pivot), total, (name, arm_sign(name), arm), forces.balancing)
+    elif terms := list(_terms(project, total)) if np.isfinite(total.at(k)) else []:
+        moment = float(project.study.balance["M"].at(k))
+        sense = -crank.sense if moment < 0 else crank.sense
+        yield tr("ΣM_{centre} = {sum} = 0").format(centre=indexed(crank.pivot), sum=_sum([Term(name, sense, ()), *terms]))
+        solved = [term._replace(sign=-sense * term.sign) for term in terms]
+        yield f"{_worked_out(solved, Quantity(name, abs(moment), 'N*m'))} {tr(SENSES[moment < 0])}"
 
 
 def _guided(project: Project, g: StructuralGroup) -> Iterator[str]:
