@@ -84,7 +84,7 @@ def test_highest_ordinate_from_amplitude_and_poles(name, height):
 def test_curves_pass_through_the_chord_ends_and_keep_to_the_law():
     m = drawn(cam_data())
     phi = m.scales.phi
-    for curve, steps, scale, f in ((m.curve_ds(), m.ds, m.scales.ds, m.law.ds), (m.curve_s(), m.s, m.scales.s, m.law.s)):
+    for curve, steps, scale, f in ((m.curve(1), m.ds, m.scales.ds, m.law.ds), (m.curve(0), m.s, m.scales.s, m.law.s)):
         for step in steps:
             assert np.abs(curve - step.value).min() < 1e-9
         # A fifth of the pencil's breadth between the points.

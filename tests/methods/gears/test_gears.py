@@ -200,7 +200,7 @@ def test_unrolled_involute_is_the_parametric_one(d):
         assert abs(points[parts]) < 1e-16 + 1e-15 * w.ra
         # the smooth curve is made of the same steps
         fine = np.sqrt(np.linspace(0, w.t_tip**2, 40))
-        assert np.abs(gear.smooth_involute(w)["E"].value - parametric(w, centre, foot, fine)).max() < 1e-15 + 1e-14 * w.ra
+        assert np.abs(gear.smooth_involute(w)["Ek"].value - parametric(w, centre, foot, fine)).max() < 1e-15 + 1e-14 * w.ra
         # it reaches the tip, with two divisions beyond N at least
         assert lengths[-1] >= w.t_tip - 1e-15
         assert len(lengths) >= parts + 3

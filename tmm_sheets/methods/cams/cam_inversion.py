@@ -12,8 +12,8 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import Floats, Points, Reals, Signs, primitive
 from tmm_sheets.construction.step import Helper, Plan, Reading, Rule, Step, StepTable, record
-from tmm_sheets.methods.cams.cam_displacement import Displacement, ExactMotion, in_phase
-from tmm_sheets.methods.cams.cam_zone import ALONG_ROCKER, TURNED, Cones, Zone, extreme, found_share, pieces_of
+from tmm_sheets.methods.cams.cam_displacement import Displacement, ExactMotion
+from tmm_sheets.methods.cams.cam_zone import ALONG_ROCKER, TURNED, Cones, Zone, extreme, pieces_of
 from tmm_sheets.words import marked, tr
 
 LAY_OFF_FROM = Rule(
@@ -143,7 +143,7 @@ def translating(plan: Plan, dimensions: Zone, at: Displacement) -> Inversion:
 
 def rocker(plan: Plan, dimensions: Zone, at: Displacement) -> Inversion:
     """Record the inversion of an oscillating roller follower."""
-    right, turn, arm = dimensions.right, dimensions.cones.turn, dimensions.swing[3]
+    right, turn, arm = dimensions.right, dimensions.cones.turn, dimensions.shape[-1]
     pivot, apex, start, l0 = (dimensions.plan[name] for name in ("A", "O", "B_0", "l_0"))
     side = float(np.sign(ar.cross(pivot.value - apex.value, start.value - apex.value)))
     x = at.plan.add("x", ALONG_ROCKER, 1.0 if turn * right < 0 else -1.0, arm, at.ds)
@@ -255,8 +255,6 @@ class Spring:
 
     exact: ExactMotion
     plan: Plan
-    factor: float
-    preload: float
     speed: float
 
     mass = Reading("plan", "m")
@@ -336,15 +334,13 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
     record(plan, "m l ω", {} if len(mass) == 1 else OF_ROCKER, SPRING, given=given)
     pieces = [*pieces_of((law.rise, law.fall), 1e-12)]
     _, x, p = extreme(lambda x, p: -p.dds(x), pieces)
-    share = found_share(plan, exact.phases, p, x, "Q", tr("{symbol}'' is least").format(symbol=law.symbol))
-    (dds,) = in_phase(plan, law, exact.phases, p, share, "Q", (2,))
+    (dds,) = exact.found(plan, p, x, "Q", tr("{symbol}'' is least").format(symbol=law.symbol), (2,))
     record(plan, "Q_max F_max F_0 s c", SPRING, given={**given, "dds": dds})
     # Greatest is force of inertia over force of the spring, which is nowhere nothing.
     _, x, p = extreme(lambda x, p: -p.dds(x) / (preload + (1 - preload) * p.s(x) / law.stroke), pieces)
-    share = found_share(plan, exact.phases, p, x, "k", tr("the ratio F/Q where {symbol}'' < 0 is least").format(symbol=law.symbol))
-    s, dds = in_phase(plan, law, exact.phases, p, share, "k", (0, 2))
+    s, dds = exact.found(plan, p, x, "k", tr("the ratio F/Q where {symbol}'' < 0 is least").format(symbol=law.symbol), (0, 2))
     record(plan, "k_min k_F", SPRING, given={**given, "displacement": s, "dds": dds})
-    return Spring(exact, plan, factor, preload, speed)
+    return Spring(exact, plan, speed)
 
 
 # --- second disc ------------------------------------------------------------------------------------------------------

@@ -18,8 +18,8 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.expression import Complex
 from tmm_sheets.construction.scale import CURVE, MAIN, POLE, Scale, handy
-from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step
-from tmm_sheets.methods.cams.cam_displacement import KINDS, SOURCE, Displacement, ExactMotion, names, row
+from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step, StepTable, record
+from tmm_sheets.methods.cams.cam_displacement import ORDERS, SOURCE, Displacement, ExactMotion, names, of_orders, row
 from tmm_sheets.methods.cams.cam_laws import Law, Phase, PositionFunction
 from tmm_sheets.methods.integration import SMOOTH, integrate, ordinates
 from tmm_sheets.words import marked, tr
@@ -61,11 +61,17 @@ CIRCLE_CENTRE = Rule("centre of the auxiliary circle", lambda pole, radius: -(po
 
 FACTOR = Rule("scale factor", lambda mu: mu, ("number",), "number", marked("Take the scale factor {name} = {value}."), unit="1/mm")
 POLE_DISTANCE = Rule("pole distance", lambda integral, integrand, across: integral / (integrand * across), ("number",) * 3,
-                     "length",
-                     "", source=SOURCE)
+                     "length", "", source=SOURCE)
 LARGEST = Rule("largest ordinate of the law", lambda travel, peak, angle, mu: np.abs(travel) * peak / angle**2 / mu,
                ("number", "number", "angle", "number"), "length",
                marked("Greatest ordinate of the graph of the second derivative {name} = {value}."), source=SOURCE)
+SIZES: StepTable = {
+    "H_1": ("ds dds phi", "H_1", POLE_DISTANCE),
+    "H_2": ("s ds phi", "H_2", POLE_DISTANCE),
+    "a_1": ("travel_1 peak_1 angle_1 dds", "a_1", LARGEST),
+    "a_2": ("travel_2 peak_2 angle_2 dds", "a_2", LARGEST),
+}
+"""Pole distances, and the greatest ordinates of S'' in the rise and in the fall."""
 ABSCISSA = Rule("abscissa of a position", lambda phi, k, mu: rules.take(phi, k) / mu, ("angle", "number", "number"), "ordinate",
                 marked("Abscissa of the position {name} = φ/μ_φ = {value}."))
 HEIGHT = Rule("ordinate of the law", lambda y, k, mu: rules.take(y, k) / mu, ("ordinate", "number", "number"), "ordinate",
@@ -88,13 +94,9 @@ SLOPES = Rule("slopes of an integral", lambda y, at, mu, pole: rules.take(y, at)
 ON_PAPER = Rule("point of a diagram", lambda phi, across, y, mu: phi / across + 1j * (y / mu),
                 ("angle", "number", "ordinate", "number"),
                 "point", marked("Point of the smooth curve {name}."), unit="mm")
-MEASURED = {symbol: tuple(
-    Rule(f"measured ordinates, {name}{' of a rocker' if symbol == 'ψ' else ''}",
-         lambda mu, *points: row(*(np.imag(p) for p in points)) * mu, ("number", "point"), kind,
-         marked("Take the ordinate from the graph and multiply it by the scale factor: {name} = {value}."),
-         unit="" if symbol == "S" else ("rad", "1", "1")[i])
-    for i, (name, kind) in enumerate(zip(("displacement", "first derivative", "second derivative"), kinds, strict=True)))
-    for symbol, kinds in KINDS.items()}
+MEASURED = of_orders("measured ordinates, {}", *((
+    lambda mu, *points: row(*(np.imag(p) for p in points)) * mu, lambda s, own: ("number", "point"),
+    marked("Take the ordinate from the graph and multiply it by the scale factor: {name} = {value}.")) for _ in ORDERS))
 
 
 @dataclass(frozen=True)
@@ -260,18 +262,12 @@ class FollowerMotion:
         exact.plan.add("Q", ON_PAPER, exact.phi, self.numbers["μ_φ"], exact.dds, self.numbers[f"μ_{self.names[0]}"])
         return exact.plan
 
-    def curve_dds(self) -> Complex:
-        """Smooth curve S'' from position 0 to 16 for display, mm; it starts and ends on the axis."""
-        points = self.between.value
-        return np.concatenate(([0j], points, [complex(points[-1].real)]))
-
-    def curve_ds(self, parts: int = 64) -> Complex:
-        """Smooth curve S' through the chord ends for display, mm."""
-        return self._smooth(self.plan[self.names[1]].value, parts)
-
-    def curve_s(self, parts: int = 64) -> Complex:
-        """Smooth curve S through the chord ends for display, mm."""
-        return self._smooth(self.plan[self.names[2]].value, parts)
+    def curve(self, order: int, parts: int = 64) -> Complex:
+        """Smooth curve of S, S' or S'' for display, mm: the latter from position 0 to 16, on the axis at its start and end."""
+        if order == 2:
+            points = self.between.value
+            return np.concatenate(([0j], points, [complex(points[-1].real)]))
+        return self._smooth(self.plan[names(self.law.symbol)[order]].value, parts)
 
     def _smooth(self, curve: Curve, parts: int) -> Complex:
         points = []
@@ -309,11 +305,10 @@ def _numbers(law: PositionFunction, scales: MotionScales, exact: ExactMotion) ->
                                 say=tr("Take the scale factor {{name}} = {{value}} {unit}.").format(unit=scale.unit),
                                 symbol=scale.symbol)
                        for scale in (scales.phi, scales.dds, scales.ds, scales.s))
-    plan.add("H_1", POLE_DISTANCE, ds, dds, phi, symbol="H_1")
-    plan.add("H_2", POLE_DISTANCE, s, ds, phi, symbol="H_2")
-    for p, name in ((law.rise, "a_1"), (law.fall, "a_2")):
-        _, angle, _, travel = exact.phases.of[p.symbol]
-        plan.add(name, LARGEST, travel, p.law.peak, angle, dds, symbol=name)
+    (_, rise, _, up), (_, fall, _, down) = (exact.phases.of[p.symbol] for p in (law.rise, law.fall))
+    record(plan, "H_1 H_2 a_1 a_2", SIZES, given={
+        "phi": phi, "dds": dds, "ds": ds, "s": s, "travel_1": up, "peak_1": law.rise.law.peak, "angle_1": rise, "travel_2": down,
+        "peak_2": law.fall.law.peak, "angle_2": fall})
     at = exact.positions
     x = [plan.add(f"x_{label}", ABSCISSA, at.phi, k, phi, symbol=f"x_{{{label}}}") for k, label in enumerate(law.labels)]
     return plan, x

@@ -7,7 +7,7 @@ Source: manual 000, section 7, examples 1 to 3; manual 002, 4.4 (radius of curva
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, reduce
 from itertools import pairwise
@@ -19,10 +19,23 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import Floats, Points, Reals, primitive
-from tmm_sheets.construction.step import Given, GivenNumber, Helper, Plan, Reading, Rule, Step, planned, value_of
+from tmm_sheets.construction.step import (
+    Given,
+    GivenNumber,
+    Helper,
+    Plan,
+    Reading,
+    Rule,
+    Step,
+    StepTable,
+    asked_for,
+    planned,
+    record,
+    value_of,
+)
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams import cam_inversion, cam_zone
-from tmm_sheets.methods.cams.cam_displacement import Displacement, ExactMotion, in_phase
+from tmm_sheets.methods.cams.cam_displacement import Displacement, ExactMotion
 from tmm_sheets.methods.cams.cam_inversion import (
     CONTACT,
     DISTANCE,
@@ -38,7 +51,7 @@ from tmm_sheets.methods.cams.cam_inversion import (
 )
 from tmm_sheets.methods.cams.cam_laws import LAWS, PHASES, Law, Phase, PositionFunction, ordinates_law, table_law
 from tmm_sheets.methods.cams.cam_motion import FollowerMotion, MotionScales, motion, motion_scales
-from tmm_sheets.methods.cams.cam_zone import Plate, Zone, extreme, found_share, pieces_of
+from tmm_sheets.methods.cams.cam_zone import Plate, Zone, extreme, pieces_of
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
@@ -63,13 +76,6 @@ DENSE = 128
 def _circle_centre(p: Points, q: Points, r: Any) -> Points:
     """Centre of the circle through three points: the perpendicular bisectors of two chords meet there."""
     return ar.line_line((p + q) / 2, 1j * ar.ray(p, q), (q + r) / 2, 1j * ar.ray(q, r))
-
-
-THREE_POINT_CENTRE = Rule(
-    "centre of a circle through three points", _circle_centre, ("point", "point", "point"), "point",
-    marked("Through the middles of the chords {0}{1} and {1}{2} draw perpendiculars; they meet at the centre of curvature {name}."),
-    lambda a, v: (Helper("line", (a[0] + a[1]) / 2, v), Helper("line", (a[1] + a[2]) / 2, v)),
-)
 
 
 GIVEN = {"rise": (PHASES["φ_у"], "rad"), "upper_dwell": (PHASES["φ_дс"], "rad"), "fall": (PHASES["φ_с"], "rad"),
@@ -167,6 +173,18 @@ ROUNDED = Rule("rounded roller", rounded_down, ("length",), "length",
 CHOSEN = Rule("given roller", lambda radius: radius, ("length",), "length", marked("Given radius of the roller {name} = {value}."))
 OF_THREE = Rule("point of the sharpest place", rules.take, ("point", "number"), "point",
                 marked("At the sharpest place of the pitch curve mark point {name}."))
+BY_THREE_POINTS: StepTable = {
+    "E_ρ": ("near 0", "", OF_THREE),
+    "D_ρ": ("near 1", "", OF_THREE),
+    "G_ρ": ("near 2", "", OF_THREE),
+    "M": ("E_ρ D_ρ G_ρ", "", Rule(
+        "centre of a circle through three points", _circle_centre, ("point", "point", "point"), "point",
+        marked("Through the middles of the chords {0}{1} and {1}{2} draw perpendiculars; they meet at the centre of curvature "
+               "{name}."),
+        lambda a, v: (Helper("line", (a[0] + a[1]) / 2, v), Helper("line", (a[1] + a[2]) / 2, v)))),
+    "ρ_min": ("M D_ρ", "", rules.DISTANCE),
+}
+"""Radius of curvature of the sharpest place by the circle through three of its points."""
 
 
 # --- the cam --------------------------------------------------------------------------------------------------------
@@ -254,17 +272,18 @@ class Cam(ABC):
         plan = Plan(f"cam-profile-{name}", tr("Cam profile between the positions"), "m", at.plan.labels)
         return self._invert(plan, at)
 
+    @abstractmethod
     def _invert(self, plan: Plan, at: Displacement) -> Inversion:
-        raise NotImplementedError
+        """Record the inversion of the follower."""
 
     @property
     @abstractmethod
     def r0(self) -> float:
         """Smallest radius of the centre profile; of the profile itself under a flat follower, m."""
 
-    @abstractmethod
     def check(self) -> None:
         """Build what can fail: :class:`CannotBuild` says what and what to try."""
+        self._dimensions()
 
     # --- closure
 
@@ -296,17 +315,17 @@ class Cam(ABC):
     def plans(self) -> dict[str, Plan]:
         """All plans in the order of construction."""
         exact, m = self.exact, self.motion
-        plans = [exact.phases.plan, exact.positions.plan, exact.before.plan, exact.after.plan, m.numbers, m.areas, m.plan,
-                 m.between_plan, m.ordinates.plan, *self._dimension_plans(), self.inversion.plan,
-                 self.dense.at.plan, self.dense.plan,
-                 *([self.spring.plan, self.spring.course_plan] if self.spring else [])]
-        return {plan.name: plan for plan in plans}
+        return asked_for((exact.phases, exact.positions, exact.before, exact.after, m.numbers, m.areas, m, m.between_plan,
+                          m.ordinates, self._dimension_plans(), self.inversion, self.dense.at, self.dense,
+                          self.spring and (self.spring, self.spring.course_plan)))
 
-    def _dimension_plans(self) -> Iterable[Plan]:
-        raise NotImplementedError
+    @abstractmethod
+    def _dimension_plans(self) -> tuple[Any, ...]:
+        """Plans of the main dimensions, or what has them, in the order of construction."""
 
+    @abstractmethod
     def _dimensions(self) -> dict[str, Any]:
-        raise NotImplementedError
+        """Main dimensions as results."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -377,20 +396,10 @@ class RollerCam(Cam):
             second_disc(inv, self.apart, self.zone.cones)
         return inv
 
-    def check(self) -> None:
-        """Zone and roller."""
-        _ = self.roller
-
-    def _dimension_plans(self) -> Iterable[Plan]:
-        z = self.zone
-        yield from (*z.plans.values(), z.curve_plan, z.every, *([z.beyond] if z.beyond else []))
-        if self.steepest is not None:
-            yield self.steepest
-        if self.discs is not None:
-            yield self.discs
-        yield from (self.curvature, self.near.at.plan, self.near.plan, self.choice)
-        if self.least is not None:
-            yield self.least
+    def _dimension_plans(self) -> tuple[Any, ...]:
+        z, near = self.zone, self.near
+        return (z.plans, z.curve_plan, z.every, z.beyond, self.steepest, self.discs, self.curvature, near.at, near, self.choice,
+                self.least)
 
     # --- curvature
 
@@ -420,10 +429,8 @@ class RollerCam(Cam):
         _, at, p = extreme(lambda x, p: curvature(p.s(x), p.ds(x), p.dds(x), *known), pieces_of(self.law.phases, 1e-12))
         a, b = next((a, b) for a, b in pairwise((0.0, *p.law.jumps, 1.0)) if a < at < b)
         tag = "ρ2" if second else "ρ"
-        share = found_share(plan, self.exact.phases, p, at, tag,
-                            tr("the curvature of the convex part of the pitch curve is greatest"))
-        moving = in_phase(plan, self.law, self.exact.phases, p, share, tag)
-        radius = plan.add(f"{tag}_min", rule, *moving, *of) if second else plan.add("ρ_1", rule, *moving, *of)
+        moving = self.exact.found(plan, p, at, tag, tr("the curvature of the convex part of the pitch curve is greatest"))
+        radius = plan.add("ρ2_min" if second else "ρ_1", rule, *moving, *of)
         return Sharpest(p, at, radius, float(p.phi(a)), float(p.phi(b)), self.law.parts)
 
     rho_min = Reading("curvature", "ρ_min")
@@ -534,10 +541,7 @@ class RollerCam(Cam):
     def inversion(self) -> Inversion:
         """Inversion in the numbered positions, with curvature, roller and profile: the plan of the protocol."""
         inv = super().inversion
-        near = self.near.centres
-        e, d, g = (inv.plan.add(f"{name}_ρ", OF_THREE, near, k) for k, name in enumerate("EDG"))
-        centre = inv.plan.add("M", THREE_POINT_CENTRE, e, d, g)
-        inv.plan.add("ρ_min", rules.DISTANCE, centre, d)
+        record(inv.plan, " ".join(BY_THREE_POINTS), BY_THREE_POINTS, given={"near": self.near.centres, "0": 0, "1": 1, "2": 2})
         return self._contact(inv)
 
     def _contact(self, inv: Inversion) -> Inversion:
@@ -599,10 +603,6 @@ class FlatCam(Cam):
         """Smallest radius of the profile, m."""
         return self.plate.r0
 
-    def check(self) -> None:
-        """Radius and plate."""
-        _ = self.plate
-
     def _invert(self, plan: Plan, at: Displacement) -> Inversion:
         return cam_inversion.flat(plan, self.plate.plan["r_0"], self.right, at)
 
@@ -611,8 +611,8 @@ class FlatCam(Cam):
         """Smallest radius of curvature of the profile, m."""
         return float(self.plate.plan["ρ_min"].value)
 
-    def _dimension_plans(self) -> Iterable[Plan]:
-        return self.plate.plans.values()
+    def _dimension_plans(self) -> tuple[Any, ...]:
+        return (self.plate.plans,)
 
     def _dimensions(self) -> dict[str, Any]:
         names = {"r0": "r_0", "r_min": "r_min", "l1": "l_1", "l2": "l_2", "rho_min": "ρ_min"}

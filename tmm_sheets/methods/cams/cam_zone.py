@@ -25,15 +25,12 @@ from tmm_sheets.construction.expression import Complex, Directions, Floats, Poin
 from tmm_sheets.construction.step import Given, Helper, Plan, Reading, Rule, Step, StepTable, record
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams.cam_displacement import (
-    AT_SHARE,
-    KINDS,
+    ORDERS,
     SOURCE,
     Displacement,
     ExactMotion,
-    Phases,
-    displacement,
-    in_phase,
     names,
+    of_orders,
 )
 from tmm_sheets.methods.cams.cam_laws import Phase, PositionFunction
 from tmm_sheets.numbers import fixed
@@ -272,11 +269,9 @@ TURNED = Rule("turn about the axis of the rocker", lambda a, b, angle, sense: a 
               lambda a, v: (Helper("line", a[0], v),))
 SUM = Rule("add ordinates", lambda a, b: a + b, ("ordinate", "ordinate"), "ordinate",
            marked("To the ordinate {0} of S add the ordinate {1} of S'': ordinate {name} = {value}."))
-FIRST = {symbol: tuple(
-    Rule(f"ordinates of the limited phases, {('displacement', 'first derivative')[i]}{' of a rocker' if symbol == 'ψ' else ''}",
-         rules.take, (kind, "number"), kind, marked("Ordinate of the graph {name} = {value}."),
-         unit="" if symbol == "S" else ("rad", "1")[i])
-    for i, kind in enumerate(kinds[:2])) for symbol, kinds in KINDS.items()}
+FIRST = of_orders("ordinates of the limited phases, {}",
+                  *((rules.take, lambda s, own: (own, "number"), marked("Ordinate of the graph {name} = {value}."))
+                    for _ in ORDERS[:2]))
 ALONG_ROCKER = Rule("analogue on the rocker", lambda sign, arm, dpsi: sign * arm * dpsi, ("number", "length", "number"), "ordinate",
                     marked("Segment {name} = AB·ψ' = {value}."), source=SOURCE)
 LOWEST_SUM = Rule("lowest sum", lambda s, dds: s + dds, ("ordinate", "ordinate"), "ordinate",
@@ -294,8 +289,6 @@ ROUNDED = Rule("rounded radius", rounded_up, ("length",), "length", marked("Roun
 CHOSEN = Rule("given radius", lambda radius: radius, ("length",), "length", marked("Given by the task: {name} = {value}."))
 LARGEST = Rule("largest ordinate", np.abs, ("ordinate",), "length",
                marked("The greatest ordinate of the graph S' gives the size of the flat face {name} = {value}."))
-CHOICE = Rule("share found", lambda x: x, ("number",), "number",
-              marked("Find the place by search: part of the phase {name} = {value}."), unit="1")
 
 ZONE: StepTable = {
     "B": ("0", "", rules.GIVEN),
@@ -386,16 +379,6 @@ PLATE: StepTable = {
 """The cam under a flat follower by the least sum S + S''."""
 
 
-def found_share(plan: Plan, at: Phases, phase: Phase, x: float, tag: str, choice: str) -> Step:
-    """Record the share of a phase that a search found by the criterion ``choice``, and the cam angle there."""
-    share = plan.add(f"x_{tag}", CHOICE, Given(x, f"x_{tag}", choice=choice, over="none", unit="1"), symbol=f"x_{{{tag}}}",
-                     say=tr("By search find the place where {choice}: part of the phase {{name}} = "
-                            "{{value}}.").format(choice=choice))
-    start, angle, _, _ = at.of[phase.symbol]
-    plan.add(f"φ_{tag}", AT_SHARE, start, angle, share, symbol=f"φ_{{{tag}}}")
-    return share
-
-
 # --- translating roller follower --------------------------------------------------------------------------------------
 
 
@@ -455,10 +438,7 @@ class Zone:
 
     def _tips(self, at: Displacement) -> Plan:
         """Record the tips of a motion."""
-        if self.cones.pivot is None:
-            at.plan.add(self._curve_name, CURVE, at.s, at.ds, self.right)
-        else:
-            at.plan.add(self._curve_name, ROCKER_CURVE, at.s, at.ds, *self.swing)
+        at.plan.add(self._curve_name, CURVE if self.cones.pivot is None else ROCKER_CURVE, at.s, at.ds, *self.shape)
         return at.plan
 
     @cached_property
@@ -467,7 +447,7 @@ class Zone:
         law = self.exact.law
         plan = Plan("cam-zone-every-between", tr("Points of the curve S(S') in all positions"), "m", law.labels)
         phi = Given(law.positions, "cam.parts", choice=tr("numbered positions in order"), unit="rad")
-        return self._tips(displacement(plan, law, self.exact.phases, phi))
+        return self._tips(self.exact.displacement(plan, phi))
 
     @cached_property
     def beyond(self) -> Plan | None:
@@ -483,9 +463,11 @@ class Zone:
         return plan[self._curve_name]
 
     @property
-    def swing(self) -> tuple[Any, ...]:
-        """Axis of the rocker, sense of its rise, side of its analogues and its arm."""
-        return self.plan["A"], self.cones.turn, self.cones.right, self.plan["A"].args[2]
+    def shape(self) -> tuple[Any, ...]:
+        """What the tips follow from beside the motion: side of the analogues; of a rocker its axis, sense, this side, its arm."""
+        if self.cones.pivot is None:
+            return (self.right,)
+        return self.plan["A"], self.cones.turn, self.right, self.plan["A"].args[2]
 
     @cached_property
     def least(self) -> Plan | None:
@@ -541,9 +523,7 @@ def zone(law: PositionFunction, alpha: float, limit: Limit, right: float, s: Any
     touching = []
     for name, side in (("K_1", 1.0), ("K_2", -1.0)):
         phase, x = _touched(cones, side)
-        share = found_share(touch, exact.phases, phase, x, name,
-                            tr("{ds} − S·tan[α] is greatest").format(ds="S'" if side > 0 else "−S'"))
-        at = in_phase(touch, law, exact.phases, phase, share, name, (0, 1))
+        at = exact.found(touch, phase, x, name, tr("{ds} − S·tan[α] is greatest").format(ds="S'" if side > 0 else "−S'"), (0, 1))
         say = (tr("Join the points D by the smooth curve S(S'). At the angle {angle}° to the axis S draw the tangent to the "
                   "curve S(S'); point of contact {{name}}.") if side > 0 else
                tr("At the angle {angle}° to the axis S draw the tangent to the curve S(S'); point of contact {{name}}."))
@@ -614,7 +594,7 @@ def rocker_zone(law: PositionFunction, arm: float, alpha: float, limit: Limit, r
 
 def _given_axis(plan: Plan, z: Zone, r0: float, l0: float | None) -> Step:
     """Record the axis O of the cam of a given radius, with r_0 and l_0."""
-    _, turn, _, arm = z.swing
+    _, turn, _, arm = z.shape
     given = {"r0": r0, "l0": l0, "turn": turn, "down": -1j}
     if l0 is None:
         record(plan, "r O", AGAINST_VELOCITY, ROCKER_ZONE, given=given)
@@ -639,16 +619,15 @@ def _rocker_axis(plan: Plan, z: Zone, rays: tuple[Ray, ...], touch: Plan | None 
 
 def _outermost(plan: Plan, z: Zone, rays: tuple[Ray, ...], touch: Plan) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
     """Record the points where outermost rays begin, and their directions."""
-    pivot, turn, right, arm = z.swing
+    turn = z.cones.turn
     touching, borders = [], []
     for k, ray in enumerate(rays, 1):
         tag = f"K_{k}"
-        x = found_share(touch, z.exact.phases, ray.phase, ray.x, tag,
-                        tr("the border ray cuts off the centre of rotation of the cam farther than all others"))
-        psi, dpsi = in_phase(touch, z.exact.law, z.exact.phases, ray.phase, x, tag, (0, 1))
+        psi, dpsi = z.exact.found(touch, ray.phase, ray.x, tag, tr(
+            "the border ray cuts off the centre of rotation of the cam farther than all others"), (0, 1))
         say = tr("Join the points D by the smooth curve D(ψ). The outermost of the rays that bound the zone on this side begins "
                  "at point {name} of the curve D(ψ).") if k == 1 else None
-        touching.append(plan.add(f"K_{k}", OUTERMOST, psi, dpsi, pivot, turn, right, arm, say=say))
+        touching.append(plan.add(f"K_{k}", OUTERMOST, psi, dpsi, *z.shape, say=say))
         borders.append(plan.add(f"t_{k}", OUTERMOST_DIRECTION, psi, turn, z.cones.alpha, ray.side * z.right))
     return tuple(touching), tuple(borders)
 
@@ -673,16 +652,12 @@ def max_pressure_angles(z: Zone) -> Plan:
             return np.abs(np.angle((z.cones.tips(p, x) - apex) / z.cones.ups(p, x)))
 
         tag = f"α{k}"
-        share = found_share(plan, z.exact.phases, phase, ar.continuous_argmax(angle, np.linspace(0, 1, 65)), tag,
-                            tr("the pressure angle is greatest"))
-        s, ds = in_phase(plan, law, z.exact.phases, phase, share, tag, (0, 1))
-        if z.cones.pivot is None:
-            up: Any = 1j
-            tip = plan.add(f"K_{tag}", TOUCH, s, ds, z.right, say=tr("Point {name} of the curve S(S') there."))
-        else:
-            pivot, turn, right, arm = z.swing
-            up = plan.add(f"u_{tag}", VELOCITY_OF_B, s, turn)
-            tip = plan.add(f"K_{tag}", OUTERMOST, s, ds, pivot, turn, right, arm, say=tr("Point {name} of the curve D(ψ) there."))
+        s, ds = z.exact.found(plan, phase, ar.continuous_argmax(angle, np.linspace(0, 1, 65)), tag,
+                              tr("the pressure angle is greatest"), (0, 1))
+        turning = z.cones.pivot is not None
+        up = plan.add(f"u_{tag}", VELOCITY_OF_B, s, z.cones.turn) if turning else 1j
+        tip = plan.add(f"K_{tag}", OUTERMOST if turning else TOUCH, s, ds, *z.shape, say=tr(
+            "Point {name} of the curve D(ψ) there.") if turning else tr("Point {name} of the curve S(S') there."))
         plan.add(f"α_{k}", PRESSURE, tip, z.plan["O"], up, z.right, symbol=f"α_{k}")
     return plan
 
@@ -761,8 +736,8 @@ def plate(law: PositionFunction, s: Any, dds: Any, base_radius: float | None, ex
     sums = plan.add("S+S''", SUM, s, dds)
     # Both values of S'' count where it jumps.
     _, x, phase = extreme(lambda x, p: -(p.s(x) + p.dds(x)), pieces_of(law.phases, 1e-14))
-    at = found_share(place, exact.phases, phase, x, "min", tr("the ordinate of S + S'' is least"))
-    lowest = place.add("(S+S'')_min", LOWEST_SUM, *in_phase(place, law, exact.phases, phase, at, "min", (0, 2)))
+    lowest = place.add("(S+S'')_min", LOWEST_SUM, *exact.found(
+        place, phase, x, "min", tr("the ordinate of S + S'' is least"), (0, 2)))
     given = {"lowest": lowest, "stroke": law.stroke}
     record(plan, "r_min", PLATE, given=given)
     radius = record(plan, "r_0″ r_0′", PLATE, given=given) if base_radius is None else plan.add("r_0′", CHOSEN, base_radius)
@@ -776,6 +751,5 @@ def plate(law: PositionFunction, s: Any, dds: Any, base_radius: float | None, ex
     shares = np.linspace(0, 1, 2001)
     for name, p in (("l_1", law.rise), ("l_2", law.fall)):
         k = int(np.argmax(np.abs(p.ds(shares))))
-        share = found_share(place, exact.phases, p, float(shares[k]), name, tr("|S'| is greatest"))
-        plan.add(name, LARGEST, *in_phase(place, law, exact.phases, p, share, name, (1,)))
+        plan.add(name, LARGEST, *exact.found(place, p, float(shares[k]), name, tr("|S'| is greatest"), (1,)))
     return Plate(plan, place, exact, sums)

@@ -24,6 +24,7 @@ from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.reduced import Reduced, Reduction
+    from tmm_sheets.task.schema import FlywheelTable
 
 BENT = 0.02
 """An interval is halved when its ordinate in the middle tells its work wrongly by more, share of the range of the work."""
@@ -45,12 +46,19 @@ def _fresh(number: str, taken: set[str]) -> str:
     return found
 
 
+@dataclass(frozen=True, eq=False)
 class Intervals:
-    """Division of the angle axis, and the reduced quantities at its borders, in the middles and close together between them."""
+    """Division of the angle axis, and the reduced quantities at its borders, in the middles and close together between them.
+
+    ``space`` is the room for the diagrams, that of the method unless told; ``where`` stands behind the names of the plans, where a
+    project has two flywheels.
+    """
 
     reduced: Reduced
-    where: str
-    """Behind the names of the plans, where a project has two flywheels."""
+    data: FlywheelTable
+    space: DiagramSpace | None = None
+    fixed_scales: FlywheelScales | None = None
+    where: str = ""
 
     @cached_property
     def labels(self) -> tuple[str, ...]:
@@ -206,8 +214,6 @@ class FlywheelScales:
 class Diagrams(Intervals, ABC):
     """What the diagrams of a flywheel are drawn to: their room, scale factors and pole distance."""
 
-    space: DiagramSpace | None
-    fixed_scales: FlywheelScales | None
     usual_space: ClassVar[DiagramSpace] = DiagramSpace()
     """Room for the diagrams when none is given."""
 
@@ -219,7 +225,12 @@ class Diagrams(Intervals, ABC):
         """The same at any angles."""
         if phi is self.samples:
             return np.asarray(self.mass(self.at_samples).value)
-        return np.asarray(self.reduced.inertia(phi))
+        return np.asarray(self.reduced.inertia(phi)) - self.left_out
+
+    @property
+    def left_out(self) -> float:
+        """What of the reduced moment of inertia is in no graph, kg m2."""
+        return 0.0
 
     @cached_property
     def scales(self) -> FlywheelScales:

@@ -15,7 +15,7 @@ import numpy as np
 from tmm_sheets.construction.arithmetic import ascending, continuous_argmax
 from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.rules import LINE_LINE, taken
-from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step
+from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step, StepTable, record
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.integration import Quadrature, weighted
 from tmm_sheets.words import marked, tell, tr
@@ -42,28 +42,30 @@ def touched(curve: Curve, angle: float, side: int, samples: Floats) -> float:
     return continuous_argmax(height, samples)
 
 
-SEGMENT = Rule("segment of the energy axis", lambda a, b: np.imag(a) - np.imag(b), ("point", "point"), "ordinate",
-               marked("On the axis ΔE measure the segment from {1} to {0}, positive upwards: {name} = {value}."))
-UPPER_ANGLE = Rule(
-    "angle of the upper tangent", lambda mu_j, mu_e, omega, delta: np.arctan(mu_j / (2 * mu_e) * (omega * (1 + delta / 2)) ** 2),
-    ("number",) * 4, "angle", marked("Compute the slope angle of the tangent: {formula}."),
-    source="000, 5.5")
-LOWER_ANGLE = Rule(
-    "angle of the lower tangent", lambda mu_j, mu_e, omega, delta: np.arctan(mu_j / (2 * mu_e) * (omega * (1 - delta / 2)) ** 2),
-    ("number",) * 4, "angle", marked("Compute the slope angle of the tangent: {formula}."),
-    source="000, 5.5")
 SLOPE_OF_ANGLE = Rule("slope of an angle", np.tan, ("angle",), "number", "{name} = {value}.", exact=True)
-UNDER_ANGLE = Rule("direction under an angle", lambda angle: np.cos(angle) + 1j * np.sin(angle), ("angle",), "direction",
-                   marked("At the angle {0} to the axis of the reduced moments of inertia take the direction {name}."))
-PROJECT = Rule(
-    "project from two graphs", lambda e, j: j + 1j * e, ("ordinate", "ordinate"), "point",
-    marked("From the graph ΔE(φ1) draw the horizontal with the ordinate {0}, from the graph J(φ1) the vertical with the abscissa "
-           "{1}: they meet at a point of the energy-mass curve."),
-    lambda a, v: (Helper("line", complex(0, v.imag), v), Helper("line", complex(v.real, 0), v)),
-)
-TOUCH = Rule("point of contact", lambda e, j: j + 1j * e, ("ordinate", "ordinate"), "point",
-             marked("Draw the tangent of this direction to the curve: point of contact {name} with the ordinate {0} and the "
-                    "abscissa {1}."))
+ENERGY_MASS: StepTable = {
+    "points": ("energy inertia", "", Rule("project from two graphs", lambda e, j: j + 1j * e, ("ordinate", "ordinate"), "point",
+        marked("From the graph ΔE(φ1) draw the horizontal with the ordinate {0}, from the graph J(φ1) the vertical with the "
+               "abscissa {1}: they meet at a point of the energy-mass curve."),
+        lambda a, v: (Helper("line", complex(0, v.imag), v), Helper("line", complex(v.real, 0), v)))),
+    "ψ_max": ("μ_J μ_E ω_1 δ", "", Rule(
+        "angle of the upper tangent",
+        lambda mu_j, mu_e, omega, delta: np.arctan(mu_j / (2 * mu_e) * (omega * (1 + delta / 2)) ** 2), ("number",) * 4, "angle",
+        marked("Compute the slope angle of the tangent: {formula}."), source="000, 5.5")),
+    "ψ_min": ("μ_J μ_E ω_1 δ", "", Rule(
+        "angle of the lower tangent",
+        lambda mu_j, mu_e, omega, delta: np.arctan(mu_j / (2 * mu_e) * (omega * (1 - delta / 2)) ** 2), ("number",) * 4, "angle",
+        marked("Compute the slope angle of the tangent: {formula}."), source="000, 5.5")),
+    "t_#": ("ψ_#", "", Rule("direction under an angle", lambda angle: np.cos(angle) + 1j * np.sin(angle), ("angle",), "direction",
+        marked("At the angle {0} to the axis of the reduced moments of inertia take the direction {name}."))),
+    "T_#": ("touching_e touching_j", "", Rule("point of contact", lambda e, j: j + 1j * e, ("ordinate", "ordinate"), "point",
+        marked("Draw the tangent of this direction to the curve: point of contact {name} with the ordinate {0} and the "
+               "abscissa {1}."))),
+    "a": ("T_max t_max 0 1j", "", LINE_LINE, marked("The tangent at {0} meets the axis ΔE at point {name}.")),
+    "b": ("T_min t_min 0 1j", "", LINE_LINE, marked("The tangent at {0} meets the axis ΔE at point {name}.")),
+    "ab": ("a b", "", Rule("segment of the energy axis", lambda a, b: np.imag(a) - np.imag(b), ("point", "point"), "ordinate",
+        marked("On the axis ΔE measure the segment from {1} to {0}, positive upwards: {name} = {value}."))),
+}
 
 
 def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, contact: Callable[[str, float], tuple[Step, Step]],
@@ -93,15 +95,14 @@ def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, conta
     lower one, so that no flywheel is needed).
     """
     plan = Plan(f"energy-mass{where}", tr("Energy-mass diagram"), "mm", labels)
-    plan.add("points", PROJECT, energy, inertia)
-    for name, rule, intercept in (("max", UPPER_ANGLE, "a"), ("min", LOWER_ANGLE, "b")):
-        angle = plan.add(f"ψ_{name}", rule, mu_j, mu_e, omega, delta)
+    given = {"energy": energy, "inertia": inertia, "μ_J": mu_j, "μ_E": mu_e, "ω_1": omega, "δ": delta, "0": 0j, "1j": 1j}
+    record(plan, "points", ENERGY_MASS, given=given)
+    for name, intercept in (("max", "a"), ("min", "b")):
+        angle = record(plan, f"ψ_{name}", ENERGY_MASS, given=given)
         plan.auxiliary(f"tg ψ_{name}", SLOPE_OF_ANGLE, angle, symbol=f"tg ψ_{{{name}}}")
-        direction = plan.add(f"t_{name}", UNDER_ANGLE, angle)
-        touching = plan.add(f"T_{name}", TOUCH, *contact(name, float(angle.value)))
-        plan.add(intercept, LINE_LINE, touching, direction, 0j, 1j,
-                 say=tr("The tangent at {0} meets the axis ΔE at point {name}."))
-    plan.add("ab", SEGMENT, plan["a"], plan["b"])
+        given["touching_e"], given["touching_j"] = contact(name, float(angle.value))
+        record(plan, f"t_# T_# {intercept}", ENERGY_MASS, wheel=name, given=given)
+    record(plan, "ab", ENERGY_MASS)
     return plan
 
 
@@ -231,18 +232,12 @@ SEGMENT_LIMIT = Rule(
         weighted(m, up) + weighted(end, end_up) - (omega * (1 + delta / 2)) ** 2 / 2 * j_up
         - (weighted(m, low) + weighted(end, end_low) - (omega * (1 - delta / 2)) ** 2 / 2 * j_low)),
     ("number",) * 10, "number", "", beyond_paper=True, unit="J")
-EVEN_SEGMENT_LIMIT = Rule(
-    "excess of energy at an even speed for vanishing intervals",
-    lambda m, up, low, end, end_up, end_low, j_up, j_low, omega: (
-        weighted(m, up) + weighted(end, end_up) - omega**2 / 2 * j_up
-        - (weighted(m, low) + weighted(end, end_low) - omega**2 / 2 * j_low)),
-    ("number",) * 9, "number", "", beyond_paper=True, unit="J")
 AT_CONTACT = taken("moment of inertia at a contact", "kg*m2",
                    marked("Reduced moment of inertia at the point of contact {name} = {value} kg·m²."))
 
 
 def limit_segment(plan: Plan, found: ConvergedWheel, borders: Floats, at: Callable[[str, Floats], Reduction],
-                  mass: Callable[[Reduction], Step], omega: float, delta: float | Given | None) -> Step:
+                  mass: Callable[[Reduction], Step], omega: float, delta: float | Given) -> Step:
     """Segment ``ab mu_E`` for vanishing intervals, J, as one formula: step ``ab·μ_E`` of the plan.
 
     Parameters
@@ -256,7 +251,7 @@ def limit_segment(plan: Plan, found: ConvergedWheel, borders: Floats, at: Callab
     at, mass
         reduced quantities at some angles, by a name for their plans, and the moment of inertia that counts of them.
     omega, delta
-        mean angular velocity, rad/s, and coefficient of non-uniformity: with it the links run at the extremes, without it evenly.
+        mean angular velocity, rad/s, and coefficient of non-uniformity with which the links run; 0 where they run evenly.
     """
     contacts = np.array([found.phi_max, found.phi_min])
     quadrature = Quadrature(np.zeros_like, borders, found.panels)
@@ -272,8 +267,6 @@ def limit_segment(plan: Plan, found: ConvergedWheel, borders: Floats, at: Callab
             tr("As n → ∞, the excess of energy between the points of contact by Gauss–Legendre quadrature (panels per interval: "
                "{panels}, nodes: {nodes}, relative error not above {error:.0e}): {{name}} = {{value}} J."))
     say = told.format(panels=found.panels, nodes=len(nodes) + len(ends[0]), error=max(found.error, 1e-15))
-    if delta is None:
-        return plan.add("ab·μ_E", EVEN_SEGMENT_LIMIT, *args, *j, omega, say=say)
     return plan.add("ab·μ_E", SEGMENT_LIMIT, *args, *j, omega, delta, say=say)
 
 

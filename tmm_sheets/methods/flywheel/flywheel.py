@@ -9,7 +9,7 @@ is the method's own: :mod:`~tmm_sheets.methods.flywheel.wheel_methods`.
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -17,16 +17,14 @@ import numpy as np
 
 from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.rules import GIVEN_INERTIA
-from tmm_sheets.construction.step import Given, Plan, Reading, Reported, Rule, Step, StepTable, named, planned, record
-from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace, FlywheelScales
+from tmm_sheets.construction.step import Given, Plan, Reading, Reported, Rule, Step, StepTable, asked_for, named, planned, record
 from tmm_sheets.methods.flywheel.energy_mass import STOPS, ConvergedWheel, Energy, Running, steady, too_light
 from tmm_sheets.methods.flywheel.wheel import STEEL, MotorCheck, RimWheel, motor_check, wheel
 from tmm_sheets.methods.flywheel.works import DIFFERENCE, INERTIA_AT, MOMENT_AT, SLOPE_AT, Works
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.flywheel.reduced import Reduced, Reduction
-    from tmm_sheets.task.schema import FlywheelTable
+    from tmm_sheets.methods.flywheel.reduced import Reduction
 
 
 COARSE = 0.05
@@ -108,18 +106,11 @@ OF_ENGINE: StepTable = {
 }
 
 
-@dataclass(frozen=True, eq=False)
 class Flywheel(Works):
     """One flywheel: the plans of its construction (mm of paper), their results in SI units, and the limit.
 
     Everything is computed when first read.
     """
-
-    reduced: Reduced
-    data: FlywheelTable
-    space: DiagramSpace | None = None
-    fixed_scales: FlywheelScales | None = None
-    where: str = ""
 
     method: ClassVar[str]
     """Name of the method, as in the project file."""
@@ -137,17 +128,15 @@ class Flywheel(Works):
     @property
     def plans(self) -> dict[str, Plan]:
         """The plans by name, in drawing order, after those of the reduced quantities."""
-        r = self.reduced
-        held = (*((self.rotor_plan,) if self.rotor_plan.steps else ()), self.given_plan) if self.given else ()
-        shown = (*held, self.moment_plan, self.middles_plan, self.slopes_plan, self.intervals_plan, self.area_plan, self.work_plan,
-                 self.driving_plan, self.total_plan, self.inertia_plan, self.contacts_plan, *self.own_plans)
-        rotor, check = self.rotor_plan, self.motor
-        found = (self.delta_plan,) if self.given else (self.first_plan,)
-        last = (*((rotor,) if rotor.steps and not self.given else ()), self.power_plan, *found, self.limit_plan, *self.later_plans,
-                *((self.wheel.plan,) if self.wheel else ()), *((check.plan,) if check else ()), self.position_acceleration)
-        before = (*r.crank_plans, self.data_plan, self.across_plan, self.borders_plan,
-                  *(p for at in (r.numbered, *r.kept.values()) for p in at.plans))
-        return {p.name: p for p in (*before, *shown, *last)}
+        rotor = self.rotor_plan if self.rotor_plan.steps else None
+        after = (self.given and (rotor, self.given_plan), self.moment_plan, self.middles_plan, self.slopes_plan,
+                 self.intervals_plan, self.area_plan, self.work_plan, self.driving_plan, self.total_plan, self.inertia_plan,
+                 self.contacts_plan, self.own_plans, None if self.given else rotor, self.power_plan,
+                 self.delta_plan if self.given else self.first_plan, self.limit_plan, self.later_plans, self.wheel, self.motor,
+                 self.position_acceleration)
+        # They ask for reduced quantities, whose plans come before them.
+        reduced = [at.plans for at in (self.reduced.numbered, *self.reduced.kept.values())]
+        return asked_for((self.reduced.crank_plans, self.data_plan, self.across_plan, self.borders_plan, reduced, after))
 
     @property
     @abstractmethod
@@ -276,11 +265,7 @@ class Flywheel(Works):
     @property
     def J_flywheel_converged(self) -> float:
         """Moment of inertia of the flywheel for vanishing intervals, kg m2; a given one is what it is."""
-        return float(self._flywheel_converged.value)
-
-    @property
-    def _flywheel_converged(self) -> Step:
-        return self.first_plan["J_м"] if self.given else self.limit_plan["J_м∞"]
+        return float((self.first_plan["J_м"] if self.given else self.limit_plan["J_м∞"]).value)
 
     @property
     def needed(self) -> bool:
@@ -430,7 +415,7 @@ class Flywheel(Works):
             "ab_mm": self.ab,
             "J_first": self.first_plan["J_I"],
             "J_flywheel": self.first_plan["J_м"],
-            "J_flywheel_converged": self._flywheel_converged,
+            "J_flywheel_converged": self.first_plan["J_м"] if self.given else self.limit_plan["J_м∞"],
             "difference_percent": self.limit_plan["разность"],
             "needed": self.needed,
             "form": w and w.form,

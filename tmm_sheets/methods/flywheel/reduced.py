@@ -96,7 +96,6 @@ class Reduction:
         self.plan = Plan(f"reduction{where}", tr("Reduction of forces and masses"), "", labels, search=search)
         self.slope_plan = Plan(f"inertia-slope{where}", tr("Derivative of the reduced moment of inertia"), "", labels,
                                search=search)
-        self._moments: dict[int, Step] = {}
         self.loads: dict[str, Step] = {}
         self.over = Given(phi, "cycle", "φ_1", "rad")
         self.turned = reduced.cycle.turned_row(phi)
@@ -129,12 +128,9 @@ class Reduction:
 
         Step ``M``; before a jump ``M(−)``, between two jumps that fall together ``M(0)``.
         """
-        if side not in self._moments:
-            self._moments[side] = self._moment(side)
-        return self._moments[side]
-
-    def _moment(self, side: int) -> Step:
         mark = {1: "", 0: "(0)", -1: "(−)"}[side]
+        if f"M{mark}" in self.plan:
+            return self.plan[f"M{mark}"]
         vel, r, plan = self.velocities, self.reduced, self.plan
         powers: list[Any] = []
         for f in r.forces:

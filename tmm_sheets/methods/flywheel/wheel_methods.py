@@ -285,11 +285,10 @@ class Mertsalov(Flywheel):
         """Reduced moment of inertia of the links without the crank, kg m2."""
         return at.others
 
-    def inertia(self, phi: Any) -> Floats:
-        """The same at any angles."""
-        if phi is self.samples:
-            return np.asarray(self.mass(self.at_samples).value)
-        return np.asarray(self.reduced.inertia(phi)) - self.reduced.crank_inertia
+    @property
+    def left_out(self) -> float:
+        """The crank's own, kg m2."""
+        return self.reduced.crank_inertia
 
     def _energies(self, excess: Floats, mass: Floats) -> Iterable[float]:
         first = excess - mass * self.reduced.omega1**2 / 2
@@ -378,7 +377,7 @@ class Mertsalov(Flywheel):
 
         fast, slow = (continuous_argmax(lambda phi, side=side: side * first(phi), self.samples) for side in (1, -1))  # type: ignore[misc]
         found = ConvergedWheel(np.nan, np.nan, np.inf, fast, slow, work.panels)
-        return limit_segment(plan, found, self.edges, self.at, self.mass, self.omega1, None)
+        return limit_segment(plan, found, self.edges, self.at, self.mass, self.omega1, 0.0)
 
     def _first_converged(self, plan: Plan, excess: Step) -> Step:
         return plan.add("J_I∞", OF_EXCESS, excess, self.permitted, self.omega1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,9 +18,6 @@ from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT
 from tmm_sheets.methods.integration import AREA, ON_CURVE, ORIGIN, SMOOTH, Quadrature, differentiate, integrate
 from tmm_sheets.numbers import is_zero
 from tmm_sheets.words import marked, tr
-
-if TYPE_CHECKING:
-    from tmm_sheets.task.schema import FlywheelTable
 
 
 @primitive("gather ordinates", "real")
@@ -50,12 +47,6 @@ LEVEL = 1e-12
 """Slope of a curve that is level but for rounding, in slopes of the chord."""
 JUMP = 1e-6
 """Ordinates of a graph on both sides of a border that differ by more, mm, are those of a jump."""
-BULGE = Rule("bulge of a curve", lambda y, a, b, share: y - ((1 - share) * a + share * b), ("number",) * 4, "number",
-             marked("The curve departs from the chord between neighbouring positions by {name} = {value} mm."), unit="mm",
-             exact=True)
-ON_DRAWN = Rule("ordinate of a drawn curve", lambda a, b, share, bulge: (1 - share) * a + share * b + bulge, ("number",) * 4,
-                "ordinate", marked("On the curve drawn through the points of the positions measure the ordinate {name} = {value}."),
-                unit="mm")
 BORDER_SLOPE = Rule("slope of an integral", lambda y, pole: y / pole, ("number", "length"), "number",
                     marked("Slope of the graph of work {name} = {value}."))
 STEEPEST = Rule("greatest slope of an integral", lambda y, pole, most: most * y / pole, ("number", "length", "number"), "number",
@@ -84,12 +75,6 @@ ON_LINE = Rule("ordinate of a straight line", lambda x, end: x * np.imag(end) / 
                marked("At the abscissa {0} measure the ordinate of the line {name} = {value}."))
 SUM = Rule("add ordinates", lambda a, b: a + b, ("ordinate", "ordinate"), "ordinate",
            marked("Add the ordinates {0} and {1} with their signs: {name} = {value}."))
-AREA_ORDINATE = Rule("ordinate from an area", lambda a, mu: a / mu, ("number", "number"), "ordinate",
-                     marked("As a check, the area of the graph of the moment gives the final ordinate of work {name} = {value}."),
-                     beyond_paper=True)
-BESIDE_AREA = Rule("difference from the area", lambda end, area: np.imag(end) - area, ("point", "ordinate"), "ordinate",
-                   marked("The final ordinate {0} as constructed differs from it by {name} = {value}: the ordinate in the middle "
-                          "of an interval is not the mean ordinate of the curve."), beyond_paper=True)
 ENLARGE = Rule("enlarge ordinates", lambda y, mu, other: y * (mu / other), ("ordinate", "number", "number"), "ordinate",
                marked("Convert the ordinate {0} from the scale factor μ_A = {1} J/mm to μ_E = {2} J/mm: {name} = {0}·μ_A/μ_E = "
                       "{value}."))
@@ -109,12 +94,41 @@ TOTAL: StepTable = {
     "δA": ("A_Σ area", "",
         DIFFERENCE, marked("The work of the cycle against that by the area of the graph: {name} = {value} %.")),
 }
+DRAWN_BETWEEN: StepTable = {
+    "f_#": ("exact a b share", "", Rule(
+        "bulge of a curve", lambda y, a, b, share: y - ((1 - share) * a + share * b), ("number",) * 4, "number",
+        marked("The curve departs from the chord between neighbouring positions by {name} = {value} mm."), unit="mm", exact=True)),
+    "#": ("a b share f_#", "", Rule(
+        "ordinate of a drawn curve", lambda a, b, share, bulge: (1 - share) * a + share * b + bulge, ("number",) * 4, "ordinate",
+        marked("On the curve drawn through the points of the positions measure the ordinate {name} = {value}."), unit="mm")),
+}
+"""An ordinate between two drawn points: as exact as the curve is known, as wrong as the points are."""
+OF_THE_WORK: StepTable = {
+    "∫M": ("A_Σ μ_A", "", Rule(
+        "ordinate from an area", lambda a, mu: a / mu, ("number", "number"), "ordinate",
+        marked("As a check, the area of the graph of the moment gives the final ordinate of work {name} = {value}."),
+        beyond_paper=True)),
+    "ΔA": ("end ∫M", "", Rule(
+        "difference from the area", lambda end, area: np.imag(end) - area, ("point", "ordinate"), "ordinate",
+        marked("The final ordinate {0} as constructed differs from it by {name} = {value}: the ordinate in the middle "
+               "of an interval is not the mean ordinate of the curve."), beyond_paper=True)),
+}
 BY_AREA: StepTable = {
     "A": ("moment halves weights ends", "", AREA),
     "A_Σ": ("A last", "", WORK_AT),
     "M": ("A_Σ φ_ц", "", Rule("mean moment from the work", lambda a, period: -a / period, ("number", "number"), "number",
             marked("By the area {name} = {value} N·m."), beyond_paper=True, unit="N*m")),
 }
+GRAPHS: StepTable = {
+    "M_пр": ("moment closing", lambda: tr("M_red"), MOMENT_AT),
+    "y_M": ("M_пр μ_M", "", TO_PAPER),
+    "M": ("x y_M", "", PLOT),
+    "J_пр": ("inertia closing", lambda: tr("J_red"), INERTIA_AT),
+    "y_J": ("J_пр μ_J", "", TO_PAPER),
+    "J": ("y_J", "", LAY_DOWN),
+    "points": ("x J", "", PLOT),
+}
+"""The graphs of the reduced moment and of the reduced moment of inertia."""
 DRIVING: StepTable = {
     "0": ("zero", "", ORIGIN),
     "K": ("end", "", Rule("balance the cycle", np.conj, ("point",), "point",
@@ -144,8 +158,6 @@ class Works(Diagrams):
     It takes the ordinate in the middle of each interval from the moment graph; the ends of the chords are joined by the smooth
     curve whose slopes are the graph's own ordinates.
     """
-
-    data: FlywheelTable
 
     @property
     def given(self) -> bool:
@@ -199,8 +211,8 @@ class Works(Diagrams):
     @planned("reduced-moment", marked("Graph of the reduced moment"), "mm", "labels")
     def moment_plan(self, plan: Plan) -> None:
         """Graph of the reduced moment: step ``M`` holds its points at the positions, mm, ``M_пр`` the moment, N m."""
-        moment = plan.add("M_пр", MOMENT_AT, self.reduced.numbered.moment(), self.closing, symbol=tr("M_red"))
-        plan.add("M", PLOT, self.across, plan.add("y_M", TO_PAPER, moment, self.mu("moment")))
+        record(plan, "M_пр y_M M", GRAPHS, given={
+            "moment": self.reduced.numbered.moment(), "closing": self.closing, "μ_M": self.mu("moment"), "x": self.across})
 
     @cached_property
     def work_ends(self) -> tuple[Step, ...]:
@@ -228,7 +240,8 @@ class Works(Diagrams):
             if left is None and right is None:
                 plan.add(f"y{interval}", LAY_DOWN, y)
             else:
-                self._on_drawn(plan, f"y{interval}", y, left or right, right or left, 0.5)
+                record(plan, "f_# #", DRAWN_BETWEEN, wheel=f"y{interval}",
+                       given={"exact": y, "a": left or right, "b": right or left, "share": 0.5})
             chord = float(middles.value[k])
             steep = np.array([slopes["+"].value[k], slopes["−"].value[k + 1]]) * self.pole * chord
             for side, at, border, ahead in zip("+−", (left, right), (k, k + 1), steep, strict=True):
@@ -248,12 +261,6 @@ class Works(Diagrams):
             return None
         return plan[name] if name in plan else plan.add(name, ORDINATE_AT, row, k)
 
-    @staticmethod
-    def _on_drawn(plan: Plan, name: str, exact: Step, a: Any, b: Any, share: float) -> Step:
-        """Ordinate between two drawn points: as exact as the curve is known, as wrong as the points are."""
-        bulge = plan.add(f"f_{name}", BULGE, exact, a, b, share)
-        return plan.add(name, ON_DRAWN, a, b, share, bulge)
-
     @property
     def pole(self) -> float:
         """Pole distance, mm."""
@@ -267,8 +274,7 @@ class Works(Diagrams):
         ends = integrate(plan, "", across, [of[f"y{name}"] for name in self.intervals], self.pole,
                          borders=self.borders, intervals=self.intervals, mark=self.mark)
         plan.add("A(φ)", SMOOTH, *ends, *(of[f"{side}{name}"] for side in "+−" for name in self.intervals))
-        area = plan.add("∫M", AREA_ORDINATE, self.area_plan["A_Σ"], self.mu("work"))
-        plan.add("ΔA", BESIDE_AREA, ends[-1], area)
+        record(plan, "∫M ΔA", OF_THE_WORK, given={"A_Σ": self.area_plan["A_Σ"], "μ_A": self.mu("work"), "end": ends[-1]})
 
     @planned("area@limit", marked("Work by the area of the graph of the moment"), "", "labels")
     def area_plan(self, plan: Plan) -> None:
@@ -323,9 +329,9 @@ class Works(Diagrams):
     @planned("reduced-inertia", marked("Graph of the reduced moment of inertia"), "mm", "labels")
     def inertia_plan(self, plan: Plan) -> None:
         """Graph of the reduced moment of inertia: ``J`` the ordinates, ``points`` at the positions, mm; ``J_пр``, kg m2."""
-        inertia = plan.add("J_пр", INERTIA_AT, self.mass(self.reduced.numbered), self.closing, symbol=tr("J_red"))
-        ordinate = plan.add("J", LAY_DOWN, plan.add("y_J", TO_PAPER, inertia, self.mu("inertia")))
-        plan.add("points", PLOT, self.across_plan["x_J" if "x_J" in self.across_plan else "x"], ordinate)
+        record(plan, "J_пр y_J J points", GRAPHS, given={
+            "inertia": self.mass(self.reduced.numbered), "closing": self.closing, "μ_J": self.mu("inertia"),
+            "x": self.across_plan["x_J" if "x_J" in self.across_plan else "x"]})
 
     @planned("ordinates@contacts", marked("Ordinates of the graphs at the points of contact"), "mm")
     def contacts_plan(self, plan: Plan) -> None:
@@ -346,7 +352,8 @@ class Works(Diagrams):
         before, after = self.reduced.phi[right - 1:right + 1]
         a, b = (plan.add(f"y_J{self.labels[k]}_{name}", ORDINATE_AT, row, k) for k in (right - 1, right))
         share = named((phi - before) / (after - before), f"share of the interval at the contact {name}")
-        return x, energy, self._on_drawn(plan, f"J_{name}", exact, a, b, share)
+        return x, energy, record(plan, "f_# #", DRAWN_BETWEEN, wheel=f"J_{name}",
+                                 given={"exact": exact, "a": a, "b": b, "share": share})
 
     # --- curves on paper, mm, over the angle ----------------------------------------------------------
     def work_curve(self, phi: Any) -> Floats:

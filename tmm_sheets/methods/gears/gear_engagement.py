@@ -25,7 +25,7 @@ from tmm_sheets.construction.rules import (
     TANGENT,
 )
 from tmm_sheets.construction.scale import CURVE
-from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step, StepTable, record
+from tmm_sheets.construction.step import Given, Helper, Plan, Rule, StepTable, record
 from tmm_sheets.methods.gears.gear_geometry import GearWheel, PairGeometry
 from tmm_sheets.methods.gears.rack import TAKEN
 from tmm_sheets.numbers import number
@@ -123,21 +123,6 @@ ROLLED = Rule(
            "from {2} equals the segment {0}{3})."),
     lambda a, v: (Helper("line", a[1], v),),
 )
-DIVIDE = Rule(
-    "equal parts", lambda p, q, k, parts: p + (q - p) * (k / parts), ("point", "point", "number", "number"), "point",
-    marked("Divide the segment {0}{1} into equal parts ({3} of them); division {2} from {0}: point {name}."),
-)
-LAY_ARC = Rule(
-    "lay off an arc", _lay_arc, ("point", "point", "point", "number", "number"), "point",
-    marked("Along the base circle with the centre {0} lay off from {1} an arc equal to the segment from {1} to the division {3}: "
-           "point {name}."),
-    lambda a, v: (Helper("line", a[0], v),),
-)
-END_OF_TANGENT = Rule(
-    "end of the unrolled tangent", _end_of_tangent, ("point", "point", "point", "point", "length"), "point",
-    marked("At {3} draw the tangent (perpendicular to the radius) and lay off {4} on it: point {name} of the involute."),
-    lambda a, v: (Helper("line", a[3], v),),
-)
 ON_CIRCLE = Rule(
     "profile cuts a circle", _profile_on_circle, ("point", "point", "point", "length"), "point",
     marked("The profile through {2} cuts the circle with the radius {3} and the centre {0} at point {name}."),
@@ -220,6 +205,21 @@ ON_RADIUS: StepTable = {
         marked("From the centre of the fillet {2} drop the perpendicular to the radius {1}: point of junction {name}."),
     )),
 }
+UNROLLING: StepTable = {
+    "#": ("pole foot number parts", "", Rule(
+        "equal parts", lambda p, q, k, parts: p + (q - p) * (k / parts), ("point", "point", "number", "number"), "point",
+        marked("Divide the segment {0}{1} into equal parts ({3} of them); division {2} from {0}: point {name}."))),
+    "#′": ("centre foot pole number parts", "", Rule(
+        "lay off an arc", _lay_arc, ("point", "point", "point", "number", "number"), "point",
+        marked("Along the base circle with the centre {0} lay off from {1} an arc equal to the segment from {1} to the division "
+               "{3}: point {name}."), lambda a, v: (Helper("line", a[0], v),))),
+    "Pw#": ("pole #", "P_w#", DISTANCE),
+    "E#": ("centre foot pole #′ Pw#", "", Rule(
+        "end of the unrolled tangent", _end_of_tangent, ("point", "point", "point", "point", "length"), "point",
+        marked("At {3} draw the tangent (perpendicular to the radius) and lay off {4} on it: point {name} of the involute."),
+        lambda a, v: (Helper("line", a[3], v),))),
+}
+"""A division of the segment from the pole to the foot, unrolled from the base circle."""
 SLIDING_STEPS: StepTable = {
     "K": ("Pw N1 to_first last to_second", "", Rule(
         "point of the line of action", lambda p, a, s, b, t: p + (a - p) * s + (b - p) * t,
@@ -290,7 +290,7 @@ def involute_plan(wheel: GearWheel, engagement: Plan, parts: int) -> Plan:
     whole = Given(parts, f"gear.involute.parts[{wheel.number - 1}]", over="none",
                   choice=tr("parts of the segment PwN of 15–25 mm on the sheet"))
     for k in divisions(wheel, parts):
-        _unroll(plan, wheel, engagement, float(k), whole, (f"{k}", f"{k}′", f"Pw{k}", f"E{k}"))
+        _unroll(plan, wheel, engagement, str(k), float(k), whole)
     return plan
 
 
@@ -300,16 +300,14 @@ def smooth_involute(wheel: GearWheel, engagement: Plan, numbers: Any) -> Plan:
                 tr("Involute of wheel {wheel} between the divisions").format(wheel=wheel.number), "m",
                 tuple(f"{v:g}" for v in numbers))
     shares = Given(np.asarray(numbers, dtype=float), "gear.involute.divisions", over="curve")
-    _unroll(plan, wheel, engagement, shares, 1, ("k", "k′", "Pwk", "E"))
+    _unroll(plan, wheel, engagement, "k", shares, 1)
     return plan
 
 
-def _unroll(plan: Plan, wheel: GearWheel, engagement: Plan, k: Any, parts: Any, names: tuple[str, str, str, str]) -> Step:
-    centre, foot, pole = engagement[f"O{wheel.number}"], engagement[f"N{wheel.number}"], engagement["Pw"]
-    division = plan.add(names[0], DIVIDE, pole, foot, k, parts)
-    base = plan.add(names[1], LAY_ARC, centre, foot, pole, k, parts)
-    length = plan.add(names[2], DISTANCE, pole, division, symbol=f"P_w{names[0]}")
-    return plan.add(names[3], END_OF_TANGENT, centre, foot, pole, base, length)
+def _unroll(plan: Plan, wheel: GearWheel, engagement: Plan, name: str, k: Any, parts: Any) -> None:
+    record(plan, "# #′ Pw# E#", UNROLLING, wheel=name, given={
+        "centre": engagement[f"O{wheel.number}"], "foot": engagement[f"N{wheel.number}"], "pole": engagement["Pw"], "number": k,
+        "parts": parts})
 
 
 def tooth_plan(pair: PairGeometry, wheel: GearWheel, engagement: Plan) -> Plan:

@@ -151,7 +151,7 @@ class GearPair(PairGeometry):
         return {}
 
     def smooth_involute(self, wheel: GearWheel, points: int = 40, reach: float = 1.0) -> Plan:
-        """The same construction with many divisions, from the base circle to ``reach`` times the tip's tangent: steps ``E``."""
+        """The same construction with many divisions, from the base circle to ``reach`` times the tip's tangent: steps ``Ek``."""
         key = wheel.number, reach
         if key not in self._smooth:
             numbers = np.sqrt(np.linspace(0, (wheel.t_tip / wheel.t_pole * reach) ** 2, points))

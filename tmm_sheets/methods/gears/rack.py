@@ -170,13 +170,26 @@ TAKEN = Rule("length in millimetres", lambda mm: mm / 1e3, ("number",), "length"
 TAKEN_ORDINATE = Rule("ordinate in millimetres", lambda mm: mm / 1e3, ("number",), "ordinate",
                       marked("Take the segment {name} = {value}."),
                       unit="m")
-EVEN = Rule("even share", lambda first, last, k, parts: first + (last - first) * k / parts,
-            ("inclination", "inclination", "number", "number"), "inclination",
-            marked("Divide the angle of rolling of the rack from {0} to {1} into equal parts ({3} of them): {name} = {value}."),
-            unit="rad")
 ROLLS = Rule("angle of rolling", lambda roll: roll, ("inclination",), "inclination",
              marked("Angle of rolling of the rack {name} = {value}."),
              unit="rad")
+DRAWN: StepTable = {
+    "φ": ("phi_first phi_last number parts", "", Rule(
+        "even share", lambda first, last, k, parts: first + (last - first) * k / parts,
+        ("inclination", "inclination", "number", "number"), "inclination",
+        marked("Divide the angle of rolling of the rack from {0} to {1} into equal parts ({3} of them): {name} = {value}."),
+        unit="rad")),
+    "r": ("radius", "", TAKEN),
+    "xm": ("xm", "", TAKEN_ORDINATE, marked("Take the shift of the rack {name} = {value}.")),
+    "a": ("a", "", TAKEN_ORDINATE, marked("Take half the thickness of the rack tooth {name} = {value}.")),
+    "u": ("u", "", TAKEN_ORDINATE,
+          marked("Take the distance of the centre of the rack's fillet from the axis of its tooth {name} = {value}.")),
+    "y": ("y", "", TAKEN_ORDINATE,
+          marked("Take the distance of the centre of the fillet from the reference line {name} = {value}.")),
+    "h": ("h", "", TAKEN_ORDINATE,
+          marked("Take the length of the straight part of the flank below the reference line {name} = {value}.")),
+}
+"""Angles of rolling and sizes of a rack on the sheet."""
 POSITIONS: StepTable = {
     "O": ("origin", "", GIVEN),
     "W": ("O r φ", "", Rule(
@@ -229,16 +242,9 @@ def drawn_positions(sizes: Plan, radius: Step, alpha: Step, parts: int) -> Plan:
     ``sizes`` of the rack, ``radius`` of the pitch circle and profile angle are steps.
     """
     plan = Plan("gear-rack", tr("Generation by the rack"), "m", tuple(str(k) for k in range(parts + 1)))
-    plan.add("φ", EVEN, sizes["phi_first"], sizes["phi_last"], Given(np.arange(parts + 1.0), "gear.rack.positions"),
-             Given(parts, "gear.rack.parts", over="none", choice=tr("as many positions of the rack are shown on the sheet")))
-    plan.add("r", TAKEN, radius)
-    for name, say in (("xm", tr("Take the shift of the rack {name} = {value}.")),
-                      ("a", tr("Take half the thickness of the rack tooth {name} = {value}.")),
-                      ("u", tr("Take the distance of the centre of the rack's fillet from the axis of its tooth {name} = "
-                               "{value}.")),
-                      ("y", tr("Take the distance of the centre of the fillet from the reference line {name} = {value}.")),
-                      ("h", tr("Take the length of the straight part of the flank below the reference line {name} = {value}."))):
-        plan.add(name, TAKEN_ORDINATE, sizes[name], say=say)
+    record(plan, " ".join(DRAWN), DRAWN, given=sizes.steps | {
+        "radius": radius, "number": Given(np.arange(parts + 1.0), "gear.rack.positions"), "parts": Given(
+            parts, "gear.rack.parts", over="none", choice=tr("as many positions of the rack are shown on the sheet"))})
     _place(plan, alpha)
     record(plan, "K E", CONTACT, given={"bottom": plan["h"]})
     return plan

@@ -171,7 +171,8 @@ class Kinematics:
                               symbol=f"z_{{{name}}}")
         self.diameters()
         for found in order(train):
-            self.speed(found)
+            rule, args = self.speed(found)
+            self.plan.add(f"n{found.name}", rule, *args, symbol=f"n_{{{found.name}}}")
 
     def teeth(self, mesh: Mesh) -> tuple[Step, Step]:
         """Tooth numbers of central wheel and planet."""
@@ -196,21 +197,17 @@ class Kinematics:
                 else:
                     plan.add_once(f"d{wheel}", DIAMETER, z, module, symbol=f"d_{{{wheel}}}")
 
-    def speed(self, found: Found) -> None:
-        """Speed of a wheel or carrier as it is found."""
-        name, plan, data = found.name, self.plan, self.data
-        rule: Rule = SAME_SHAFT
-        args: tuple[Any, ...] = (plan[f"n{found.shaft}"],) if found.shaft else ()
-        if name in data.speeds:
-            given = data.speeds[name]
-            rule, args = (STANDS, ()) if given is None else (GIVEN_SPEED, (given,))
-        elif len(found.meshes) == 2:
-            rule, args = self.across(name, *found.meshes)
-        elif found.meshes:
-            rule, args = self.willis(name, found.meshes[0])
-        elif not found.shaft:
-            rule, args = TOGETHER, self.all(name)
-        plan.add(f"n{name}", rule, *args, symbol=f"n_{{{name}}}")
+    def speed(self, found: Found) -> tuple[Rule, tuple[Any, ...]]:
+        """Rule and arguments for the speed of a wheel or carrier as it is found."""
+        name = found.name
+        if name in self.data.speeds:
+            given = self.data.speeds[name]
+            return (STANDS, ()) if given is None else (GIVEN_SPEED, (given,))
+        if found.shaft:
+            return SAME_SHAFT, (self.plan[f"n{found.shaft}"],)
+        if len(found.meshes) == 2:
+            return self.across(name, *found.meshes)
+        return self.willis(name, found.meshes[0]) if found.meshes else (TOGETHER, self.all(name))
 
     def willis(self, name: str, m: Mesh) -> tuple[Rule, tuple[Any, ...]]:
         """Rule and arguments for the one unknown of a mesh."""
@@ -348,11 +345,6 @@ class SpeedPicture:
         found: Mesh = min(of, key=lambda m: link(m.planet) == link(name))
         return found
 
-    def is_planet(self, found: Found) -> bool:
-        """True for a planet on a carrier whose speed is no result of its mesh: its line needs a velocity of another link first."""
-        mesh = self.mesh_of(found.name)
-        return not found.meshes and bool(mesh.carrier) and self.train.link(mesh.planet) == self.train.link(found.name)
-
     def known(self, link: str) -> bool:
         """True for a link that stands or whose line is there."""
         return self.train.link(link) in self.plan or self.train.stands(link)
@@ -366,10 +358,13 @@ class SpeedPicture:
 
     def can(self, found: Found) -> bool:
         """True when the velocities that a line needs are there."""
-        if self.known(found.name) or not self.is_planet(found):
+        mesh = self.mesh_of(found.name)
+        # The line of a planet on a carrier whose speed is no result of its mesh needs a velocity of another link first.
+        planet = not found.meshes and mesh.carrier and self.train.link(mesh.planet) == self.train.link(found.name)
+        if self.known(found.name) or not planet:
             return all(self.known(name) for m in found.meshes for name in (m.central, m.planet, m.carrier)
                        if name and name != found.name and not (len(found.meshes) == 2 and name == m.planet))
-        return self.beside(self.mesh_of(found.name)) is not None
+        return self.beside(mesh) is not None
 
     def add(self, found: Found) -> None:
         """Line of a link, through two velocities that are there."""

@@ -47,11 +47,7 @@ class Strokes:
         width = np.mod(self.end - self.begin, 2 * np.pi)
         near = 1e-12
         t = np.where(2 * np.pi - t < near, 0.0, t)
-        if side > 0:
-            return np.asarray(t < width - near)
-        if side < 0:
-            return np.asarray((t > near) & (t <= width + near))
-        return np.asarray((t > near) & (t < width - near))
+        return np.asarray(((t > near) | (side > 0)) & (t <= width + near if side < 0 else t < width - near))
 
 
 def closed(labels: tuple[str, ...]) -> tuple[str, ...]:

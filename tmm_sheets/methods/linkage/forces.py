@@ -63,14 +63,9 @@ TANGENTIAL = Rule("component from moments", tangential_part, ("number", "point",
                   unit="N")
 
 
-def _moments(about: Any, *terms: Any) -> Any:
-    total = 0.0
-    for at, vector, couple in zip(terms[::3], terms[1::3], terms[2::3], strict=True):
-        total = total + ar.moment(about, at, vector) + couple
-    return total
-
-
-MOMENTS = Rule("sum of moments", _moments, ("point",), "number", marked("Sum of moments about {0}: {name} = {value} N·m."),
+MOMENTS = Rule("sum of moments", lambda about, *terms: sum((term for at, vector, couple in zip(
+                   terms[::3], terms[1::3], terms[2::3], strict=True) for term in (ar.moment(about, at, vector), couple)), 0.0),
+               ("point",), "number", marked("Sum of moments about {0}: {name} = {value} N·m."),
                lambda a, v: tuple(h for at, force in zip(a[1::3], a[2::3], strict=True) for h in rules.arm(a[0], at, force)),
                unit="N*m")
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import reduce
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -170,17 +172,8 @@ POWER_OF_MOMENT = Rule("power of a moment of friction", lambda m, w: m * w, ("nu
                        "", unit="W")
 POWER_OF_SLIDING = Rule("power of a reaction on sliding", lambda f, v: (f * np.conj(v)).real, ("force", "vector"), "number",
                         marked("Power of friction {name} = F·V·cos(F̅, V̅) = {value} W."), unit="W")
-
-
-def _sum(*powers: Any) -> Any:
-    total = powers[0]
-    for power in powers[1:]:
-        total = total + power
-    return total
-
-
-ALL_POWER = Rule("power of all friction", _sum, ("number",), "number", marked("Power of friction in all pairs {name} = {value} W."),
-                 unit="W")
+ALL_POWER = Rule("power of all friction", lambda *powers: reduce(add, powers), ("number",), "number",
+                 marked("Power of friction in all pairs {name} = {value} W."), unit="W")
 ON_CRANK = Rule("moment of friction reduced to the crank", lambda power, omega: power / omega, ("number", "number"), "number",
                 marked("Friction in all pairs, reduced to the input link by its power: {formula}."),
                 unit="N*m")

@@ -396,7 +396,7 @@ class Applied:
             return self.magnitude(turned, side)
         if not isinstance(self.law, StrokeLaw):
             return self.law(turned, side)
-        return self.law.ordinates(turned, side) * (1.0 if self.sign is None else float(self.sign))
+        return self.law(turned, side, signed=False) * (1.0 if self.sign is None else float(self.sign))
 
 
 def _between(begin: float, end: float, jumps: tuple[float, ...], period: float) -> Floats:
@@ -576,15 +576,8 @@ class StrokeLaw:
             i = np.where((i < 0) & (before >= 0) & (after >= 0) & self.same[before, after], after, i)
         return i
 
-    def __call__(self, turned: Reals, side: int = 0) -> Any:
-        """Signed values at angles turned."""
-        return self._values(turned, side, self.signs)
-
-    def ordinates(self, turned: Reals, side: int = 0) -> Reals:
-        """Ordinates of the diagrams at angles turned, 0 where none acts."""
-        return self._values(turned, side, (1.0,) * len(self.signs))
-
-    def _values(self, turned: Reals, side: int, signs: Sequence[float]) -> Any:
+    def __call__(self, turned: Reals, side: int = 0, *, signed: bool = True) -> Any:
+        """Values at angles turned, 0 where none acts; those of the diagrams unless they are to be ``signed``."""
         t, motion = np.asarray(turned, dtype=float), self.motion
         i = self.run(t, side)
         x = motion.fraction(t) if self.over_way else np.zeros(t.shape)
@@ -594,7 +587,7 @@ class StrokeLaw:
                 ahead = (side or 1) * run.sense * motion.way
                 # The end of a turn is not the beginning of the next.
                 at = np.where(x < NEAR, 1.0, x) if motion.endless and ahead < 0 else x
-                value = np.where(i == n, signs[n] * curve(at, ahead), value)
+                value = np.where(i == n, (self.signs[n] if signed else 1.0) * curve(at, ahead), value)
         return value
 
     @cached_property

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.expression import Directions, Reals
+from tmm_sheets.construction.expression import Reals
 from tmm_sheets.construction.rules import take
-from tmm_sheets.construction.step import Given, Plan, Rule, SearchCount, Step
+from tmm_sheets.construction.step import Given, Plan, Rule, SearchCount, Step, StepTable, asked_for, record
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups.contexts import Load
 from tmm_sheets.mechanism.model import Mechanism
@@ -56,22 +56,12 @@ class Study:
     def plans(self) -> dict[str, Plan]:
         """The plans that were asked for, in the order of construction."""
         made = vars(self)
-        found = [made[name].plan for name in ("positions", "velocities") if name in made]
-        found += made["positions"].false.values() if "positions" in made else ()
-        found += [made["sliding"].plan] if "sliding" in made and made["sliding"].plan.steps else []
-        found += [made["uneven"]] if "uneven" in made else []
-        found += [made["accelerations"].plan] if "accelerations" in made else []
-        if "loads" in made:
-            found.append(made["loads"][2])
-        if "forces" in made:
-            friction = made["forces"].friction
-            found += [friction.plan] if friction else []
-            found += [made["forces"].plan, *(fp.plan for fp in made["forces"].plans.values())]
-            found += [friction.power_plan] if friction and friction.power_plan else []
-        if "lever" in made:
-            found.append(made["lever"].plan)
-        found += [made["balance"]] if "balance" in made else []
-        return {plan.name: plan for plan in found}
+        positions, forces, sliding = (made.get(name) for name in ("positions", "forces", "sliding"))
+        friction = forces and forces.friction
+        return asked_for((
+            positions, made.get("velocities"), positions and positions.false, sliding if sliding and sliding.plan.steps else None,
+            made.get("uneven"), made.get("accelerations"), made.get("loads", ())[2:], friction, forces, forces and forces.plans,
+            friction and friction.power_plan, made.get("lever"), made.get("balance")))
 
     @cached_property
     def applied(self) -> tuple[Applied, ...]:
@@ -162,15 +152,12 @@ class Study:
         ``along`` is the force's signed size on its line, N; a moment's are ``M`` and ``M_р`` (by the lever), N m, positive in the
         sense of rotation.
         """
-        by_statics, by_lever, line = self.forces.balancing, self.lever.balancing, self.lever.line
+        line, by_statics = self.lever.line, self.forces.balancing
+        given = {"by_statics": by_statics, "by_lever": self.lever.balancing, "line": line, "sense": self.mechanism.crank.sense}
         plan = Plan("balance", tr("Comparison of the balancing quantities"), "N", self.labels, search=self.positions.plan.search)
-        if line is not None:
-            # The force plan gives a vector along the line of action, the lever its signed size there.
-            by_statics = plan.add("along", ALONG_LINE, by_statics, line)
-        else:
-            plan.add("M", IN_SENSE, by_statics, self.mechanism.crank.sense)
-            plan.add("M_р", IN_SENSE, by_lever, self.mechanism.crank.sense, symbol=tr("M_l"))
-        plan.add("Δ", DIFFERENCE, by_statics, by_lever)
+        # The force plan gives a vector along the line of action, the lever its signed size there.
+        found = record(plan, "M M_р" if line is None else "along", BALANCE, given=given)
+        record(plan, "Δ", BALANCE, given=given | {"size": by_statics if line is None else found})
         return plan
 
     def drive(self, loss: Step) -> tuple[Step, Step]:
@@ -185,8 +172,6 @@ class Study:
         return self.balance.auxiliary("M_д", MEAN, course, weights)
 
 
-ALONG_LINE = Rule("size along a line", lambda force, u: (force * np.conjugate(u)).real, ("force", "direction"), "number",
-                  marked("Projection of the force {0} on the line of action: {value} N."), unit="N")
 POWER_OF_DRIVE = Rule("power of the drive", lambda m, omega: m * omega, ("number", "number"), "number",
                       "", unit="W")
 WITHOUT_FRICTION = Rule("power of the drive without friction", lambda power, loss: power + loss, ("number", "number"), "number",
@@ -195,8 +180,16 @@ MEAN = Rule("mean moment", weighted, ("number", "number"), "number",
             marked("Mean moment over the cycle {name} = {value} N·m."), unit="N*m")
 IN_SENSE = Rule("in the sense of rotation", lambda moment, sense: sense * moment, ("number", "number"), "number",
                 marked("In the sense of rotation of the input link {name} = {value} N·m."), unit="N*m")
-DIFFERENCE = Rule("difference per cent", lambda a, b: 100 * np.abs(a - b) / np.abs(a), ("number", "number"), "number",
-                  marked("Difference {name} = |{0} − {1}|/|{0}|·100 % = {value} %."), unit="%")
+BALANCE: StepTable = {
+    "along": ("by_statics line", "", Rule(
+        "size along a line", lambda force, u: (force * np.conjugate(u)).real, ("force", "direction"), "number",
+        marked("Projection of the force {0} on the line of action: {value} N."), unit="N")),
+    "M": ("by_statics sense", "", IN_SENSE),
+    "M_р": ("by_lever sense", lambda: tr("M_l"), IN_SENSE),
+    "Δ": ("size by_lever", "", Rule(
+        "difference per cent", lambda a, b: 100 * np.abs(a - b) / np.abs(a), ("number", "number"), "number",
+        marked("Difference {name} = |{0} − {1}|/|{0}|·100 % = {value} %."), unit="%")),
+}
 
 
 # --- motion of the outputs over the cycle ------------------------------------------------------------------------------
@@ -206,29 +199,33 @@ SAMPLES = 15
 STRAIGHT = 1e-9
 """Part of its way by which a point may leave a straight line."""
 
-BEGINNING = Rule("beginning of the way", take, ("point", "number"), "point", marked("Measure the way from point {name}."), unit="m")
-WAY = Rule("way along a path", lambda p, start, u: ((p - start) * np.conj(u)).real, ("point", "point", "direction"), "number",
-           marked("Way from {1}: {name} = {value} m."), unit="m")
-
-
-def _projection(v: Directions, u: Directions) -> Any:
-    return (v * np.conj(u)).real
-
-
-VELOCITY = Rule("velocity along a path", _projection, ("point", "direction"), "number",
-                marked("Projection of {0} on the direction of the way: {name} = {value} m/s."), unit="m/s")
-ACCELERATION = Rule("acceleration along a path", _projection, ("point", "direction"), "number",
-                    marked("Projection of {0} on the direction of the way: {name} = {value} m/s²."), unit="m/s2")
 INCLINATION = Rule("inclination of a rod", lambda u, along: np.arctan((u * np.conj(along)).imag / (u * np.conj(along)).real),
                    ("direction", "direction"), "angle",
                    marked("Inclination of the rod {0} to the guide {1}: {name} = {value}."), unit="rad", source="001, (10)")
+BEGINNING = Rule("beginning of the way", take, ("point", "number"), "point", marked("Measure the way from point {name}."), unit="m")
 FIRST = Rule("first direction of a link", take, ("direction", "number"), "direction",
              marked("Measure the angle from the direction {name}."))
-ANGLE = Rule("angle turned from the beginning",
-             lambda u, start, turns: np.arctan2(u.imag, u.real) + TURN * turns - np.arctan2(start.imag, start.real),
-             ("direction", "direction", "number"), "angle", marked("Angle turned by the link {name} = {value}."))
-OMEGA = Rule("angular velocity of a link", lambda w: w, ("number",), "number", marked("{name} = {value} s⁻¹."), unit="rad/s")
-EPSILON = Rule("angular acceleration of a link", lambda e: e, ("number",), "number", marked("{name} = {value} s⁻²."), unit="rad/s2")
+OF_POINT: StepTable = {
+    "S_#": ("moved start path", "S_{#}", Rule(
+        "way along a path", lambda p, start, u: ((p - start) * np.conj(u)).real, ("point", "point", "direction"), "number",
+        marked("Way from {1}: {name} = {value} m."), unit="m")),
+    "V_#": ("velocity path", "V_{#}", Rule(
+        "velocity along a path", lambda v, u: (v * np.conj(u)).real, ("point", "direction"), "number",
+        marked("Projection of {0} on the direction of the way: {name} = {value} m/s."), unit="m/s")),
+    "a_#": ("acceleration path", "a_{#}", Rule(
+        "acceleration along a path", lambda a, u: (a * np.conj(u)).real, ("point", "direction"), "number",
+        marked("Projection of {0} on the direction of the way: {name} = {value} m/s²."), unit="m/s2")),
+}
+OF_LINK: StepTable = {
+    "ψ_#": ("moved start turns", "ψ_{#}", Rule(
+        "angle turned from the beginning",
+        lambda u, start, turns: np.arctan2(u.imag, u.real) + TURN * turns - np.arctan2(start.imag, start.real),
+        ("direction", "direction", "number"), "angle", marked("Angle turned by the link {name} = {value}."))),
+    "ω_#": ("omega", "ω_{#}", Rule("angular velocity of a link", lambda w: w, ("number",), "number",
+        marked("{name} = {value} s⁻¹."), unit="rad/s")),
+    "ε_#": ("epsilon", "ε_{#}", Rule("angular acceleration of a link", lambda e: e, ("number",), "number",
+        marked("{name} = {value} s⁻²."), unit="rad/s2")),
+}
 
 Three = tuple[Step, Step, Step]
 
@@ -322,19 +319,22 @@ class Motion:
 
 def _along(plan: Plan, study: Study, name: str, u: Given) -> Three:
     p, v, a = (of.points[name] for of in (study.positions, study.velocities, study.accelerations))
-    start = plan.add(plan.named(f"{name}₀"), BEGINNING, p, 0)
-    return (plan.add(f"S_{name}", WAY, p, start, u, symbol=f"S_{{{name}}}"),
-            plan.add(f"V_{name}", VELOCITY, v, u, symbol=f"V_{{{name}}}"),
-            plan.add(f"a_{name}", ACCELERATION, a, u, symbol=f"a_{{{name}}}"))
+    return _three(plan, BEGINNING, p, OF_POINT, name, {"velocity": v, "acceleration": a, "path": u})
 
 
 def _turning(plan: Plan, study: Study, name: str, turns: Reals) -> Three:
-    u, omega, epsilon = study.positions.directions[name], study.velocities.omega[name], study.accelerations.epsilon[name]
-    start = plan.add(plan.named(f"{name}₀"), FIRST, u, 0)
-    whole = Given(turns, f"turns of link {name}", choice="whole turns, counted on from position 0")
-    return (plan.add(f"ψ_{name}", ANGLE, u, start, whole, symbol=f"ψ_{{{name}}}"),
-            plan.add(f"ω_{name}", OMEGA, omega, symbol=f"ω_{{{name}}}"),
-            plan.add(f"ε_{name}", EPSILON, epsilon, symbol=f"ε_{{{name}}}"))
+    return _three(plan, FIRST, study.positions.directions[name], OF_LINK, name, {
+        "omega": study.velocities.omega[name],
+        "epsilon": study.accelerations.epsilon[name],
+        "turns": Given(turns, f"turns of link {name}", choice="whole turns, counted on from position 0")})
+
+
+def _three(plan: Plan, beginning: Rule, moved: Step, table: StepTable, name: str, given: dict[str, Any]) -> Three:
+    """The three quantities of an output, from where its motion begins."""
+    start = plan.add(plan.named(f"{name}₀"), beginning, moved, 0)
+    record(plan, " ".join(table), table, wheel=name, given=given | {"moved": moved, "start": start})
+    way, rate, second = (plan[key.replace("#", name)] for key in table)
+    return way, rate, second
 
 
 def _path(name: str, way: Reals) -> complex:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -30,16 +29,9 @@ COUPLE_FORCE = Rule("force of a couple", lambda m, x, y: 1j * m * ar.ray(x, y) /
 OPPOSITE_FORCE = Rule("second force of a couple", lambda f: -f, ("force",), "force",
                       marked("Second force of the couple: {name} = −{0}."),
                       unit="N")
-
-
-def _balance(pole: Any, at: Any, u: Any, *terms: Any) -> Any:
-    total = 0.0
-    for point, force in zip(terms[::2], terms[1::2], strict=True):
-        total = total + ar.moment(pole, point, force)
-    return -total / ar.moment(pole, at, u)
-
-
-BALANCE = Rule("balance of the lever", _balance, ("point", "point", "direction"), "number",
+BALANCE = Rule("balance of the lever", lambda pole, at, u, *terms: -sum((
+                   ar.moment(pole, point, force) for point, force in zip(terms[::2], terms[1::2], strict=True)), 0.0)
+                   / ar.moment(pole, at, u), ("point", "point", "direction"), "number",
                marked("From the sum of moments of all forces about the pole {0} find {name} = {value}."), unit="N")
 
 

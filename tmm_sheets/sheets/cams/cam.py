@@ -128,7 +128,7 @@ def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     area = canvas.title(Box(max(box.x0, 92.0), box.y0, box.x1, box.y1), title.format(laws=laws))
     m = cam.motion
     canvas.scales[m.plan.name] = Scale("μ", 1.0, tr("mm/mm"))  # it is constructed in millimetres of paper
-    curves = (m.curve_dds(), m.curve_ds(), m.curve_s())
+    curves = [m.curve(order) for order in (2, 1, 0)]
     ups = [max(float(c.imag.max()), 0.0) for c in curves]
     downs = [max(float(-c.imag.min()), 0.0) for c in curves]
     left, right = _reach_of_motion(m)

@@ -326,7 +326,7 @@ class GearPicture:
             if k != parts:
                 c.label(t, f"{k}′", away=centre - t, height=2.5, gap=0.8)
         smooth = self.gear.smooth_involute(wheel, reach=numbers[-1] / parts * wheel.t_pole / wheel.t_tip)
-        stage(c, smooth, None, self.at).curve("E", style="construction")
+        stage(c, smooth, None, self.at).curve("Ek", style="construction")
         c.of = "gear.engagement"
 
     def teeth(self, wheel: GearWheel) -> None:
