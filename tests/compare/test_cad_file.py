@@ -312,9 +312,9 @@ def arrayed(n):
 
 
 @pytest.mark.parametrize("doc", [nested(6, 10), nested(15, 3), arrayed(3000)], ids=["six times ten", "three and three", "array"])
-def test_blocks_that_come_to_millions_are_refused_before_they_are_taken_apart(doc, path, monkeypatch):
-    monkeypatch.setattr(cad_file.DxfReader, "_apart", lambda *_: pytest.fail("taken apart"))
-    with pytest.raises(CannotBuild, match=r"more than 60000 entities\n.*arrays"):
+def test_blocks_that_come_to_millions_are_refused_as_soon_as_they_are_too_many(doc, path, monkeypatch):
+    monkeypatch.setattr(cad_file, "MOST_PARTS", 2000)
+    with pytest.raises(CannotBuild, match=r"more than 2000 entities\n.*arrays"):
         cad_file.read(saved(doc, path))
 
 

@@ -237,7 +237,7 @@ def as_tree(source: Source, project: str, sheet: int | None, records: Sequence[F
         "findings": [_row(r, ids) for r in records],
         "unclaimed": [_given(x) for x in unclaimed],
         "summary": {"green": count["green"], "amber": count["amber"], "red": count["red"], "not_judged": count["not-judged"],
-                    "views_missing": lost, **summary},
+                    "views_missing": lost, "not_drawn": sum(r.remark.code == "not-drawn" for r in records), **summary},
     }  # fmt: skip
     return _given(out) | beside
 
@@ -415,7 +415,8 @@ def reported(source: Source, project: str, sheet: int, file: Path, said: Sequenc
     mistakes, tables, unjudged, remarks : what else is told
     """
     title = tell("{project}, sheet {sheet}: {file}").format(project=project, sheet=sheet, file=file.name)
-    story = Story(title, (*said, *remarks), tuple(mistakes), tuple(tables), tuple(unjudged))
+    whole = [ToldMistake(tell("the whole drawing"), r.remark.said(), "red", named=True) for r in start if not r.view]
+    story = Story(title, (*said, *remarks), (*whole, *mistakes), tuple(tables), tuple(unjudged))
     lines = [*listed(story.mistakes), title, ""]
     for t in story.tables:
         lines += [f"{t.title}:", *table_lines(t.head, t.rows), ""]

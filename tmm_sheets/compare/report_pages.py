@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from collections.abc import Iterator
 from html import escape
 from io import BytesIO
@@ -10,8 +9,8 @@ from itertools import zip_longest
 from typing import Any
 from urllib.parse import quote
 
-import numpy as np
-from reportlab.graphics.shapes import Circle, Drawing, Image, PolyLine, String
+from reportlab.graphics import renderSVG
+from reportlab.graphics.shapes import Circle, Drawing, Image, Path, PolyLine, String
 from reportlab.lib import colors
 from reportlab.lib.pagesizes import A4
 from reportlab.lib.styles import ParagraphStyle
@@ -36,6 +35,7 @@ article { display: flex; flex-wrap: wrap; gap: 1rem; border-left: 5px solid #c00
 article { margin: .8rem 0; padding: .6rem 1rem; }
 article.amber { border-color: #e58a00; } article div { flex: 1 1 22rem; } article h3 { font-size: 1rem; margin: 0; }
 article .where { color: #555; } svg { background: #fff; border: 1px solid #ddd; flex: 0 1 auto; max-width: 100%; height: auto; }
+svg text { font: 11px system-ui, sans-serif !important; }
 .scroll { overflow-x: auto; } table { border-collapse: collapse; margin: .4rem 0; font-size: .88rem; }
 th, td { border: 1px solid #ccc; padding: .15rem .5rem; text-align: left; vertical-align: top; } th { background: #eee; }
 tr.red td { background: #fde4e4; } tr.amber td { background: #fff3dc; }
@@ -44,8 +44,6 @@ tr.red td { background: #fde4e4; } tr.amber td { background: #fff3dc; }
 """
 OURS, THEIRS, WRONG = "#0072b2", "#737373", "#d00000"
 """Colours of the exact lines, the drawn ones, and what is wrong."""
-LONGEST = 430.0
-"""Longer side of a picture, CSS pixels."""
 
 
 def html(story: Story, folder: str = ".") -> bytes:
@@ -89,33 +87,8 @@ def _html_table(table: StoryTable, folder: str) -> str:
 
 
 def _html_picture(p: StoryPicture) -> str:
-    box = p.box
-    scale = min(LONGEST / max(box.width, box.height, 1.0), 6.0)
-    wide, high = box.width * scale, box.height * scale
-
-    def x(z: complex) -> float:
-        return (z.real - box.x0) * scale
-
-    def y(z: complex) -> float:
-        return (box.y1 - z.imag) * scale
-
-    def path(lines: tuple[Points, ...], colour: str, width: float) -> str:
-        d = "".join("M" + "L".join(f"{x(z):.1f} {y(z):.1f}" for z in line.tolist()) for line in clipped(lines, box))
-        return f'<path d="{d}" fill="none" stroke="{colour}" stroke-width="{width}" stroke-linejoin="round"/>' if d else ""
-
-    marks = "".join(f'<circle cx="{x(at):.1f}" cy="{y(at):.1f}" r="{r * scale:.1f}" fill="none" stroke="{WRONG}"'
-                    ' stroke-opacity=".5"/>' for at, r, _ in p.places)
-    for one in numbered(p.places, 13 / scale, box):
-        if one.leader is not None:
-            marks += path((np.array(one.leader),), WRONG, 0.6)
-        marks += f'<text x="{x(one.at):.1f}" y="{y(one.at):.1f}" font-size="13" fill="{WRONG}">{escape(one.text)}</text>'
-    photo = ""
-    if p.photo is not None:
-        b = p.photo.box
-        photo = (f'<image x="{x(complex(b.x0, 0)):.1f}" y="{y(complex(0, b.y1)):.1f}" width="{b.width * scale:.1f}"'
-                 f' height="{b.height * scale:.1f}" href="data:image/png;base64,{b64encode(p.photo.png).decode("ascii")}"/>')
-    return (f'<svg width="{wide:.0f}" height="{high:.0f}" viewBox="0 0 {wide:.1f} {high:.1f}" role="img">{photo}'
-            f"{path(p.theirs, THEIRS, 1.6)}{path(p.ours, OURS, 0.9)}{path(p.wrong, WRONG, 2.0)}{marks}</svg>")
+    svg = renderSVG.drawToString(_picture(p))
+    return str(svg[svg.index("<svg"):])
 
 
 TEXT = ParagraphStyle("text", fontName=FONT, fontSize=10, leading=13)
@@ -210,10 +183,12 @@ def _picture(p: StoryPicture) -> Drawing:
         return (min(max(z.real, box.x0), box.x1) - box.x0) * scale, (min(max(z.imag, box.y0), box.y1) - box.y0) * scale
 
     def draw(lines: tuple[Points, ...], colour: str, width: float) -> None:
-        for z in clipped(lines, box):
-            flat = [c for point in z.tolist() for c in at(point)]
-            if len(flat) >= 4:
-                drawing.add(PolyLine(flat, strokeColor=colors.HexColor(colour), strokeWidth=width))
+        path = Path(strokeColor=colors.HexColor(colour), strokeWidth=width, fillColor=None)
+        for first, *others in (z.tolist() for z in clipped(lines, box)):
+            path.moveTo(*at(first))
+            for point in others:
+                path.lineTo(*at(point))
+        drawing.add(path)
 
     if p.photo is not None:
         from PIL import Image as Pixels

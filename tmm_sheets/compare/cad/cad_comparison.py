@@ -24,9 +24,9 @@ from tmm_sheets.compare.cad.line_fit import (
     Numbers,
     Overlaps,
     gaps,
+    left,
     lines,
     overlaps,
-    together,
     union,
 )
 from tmm_sheets.compare.codes import Remark
@@ -164,17 +164,16 @@ class Comparison:
     ----------
     elements, space, tolerance : what is compared, where the drawing has its views, mm, and how far a point may be off, mm
     moved : views that stand elsewhere than on the sheet
-    paths : by element, the lines it must have ink along
+    paths : by element, the lines it must have ink along; of lettering none, or the strokes of its letters
     theirs, entity : pieces of their lines, and the entity of each
     found : findings by element
-    claims : their ink that belongs to elements
+    claims : their ink that belongs to elements: by piece from where to where
     in_place, in_place_of, along : what lies along elements in their places, along which, and from where to where along their paths
     inked : for elements that are not right, where along their paths there is ink in place, mm
     owned : for elements found elsewhere, the pieces of theirs they claim, from where to where
     areas : middles of their areas
     used_areas, used_writings : areas and writings that belong to elements
     zones, lettered : outlines within which any ink, or short strokes only, may lie
-    drawn_letters : elements whose letters are drawn as lines
     """
 
     in_place: Overlaps
@@ -189,7 +188,7 @@ class Comparison:
         self.entity = np.array([s.entity for s in space.strokes], dtype=np.int64)[self.theirs.owner]
         self.paths = [_paths(e) for e in self.elements]
         self.found: dict[int, CadFinding] = {}
-        self.claims: list[Overlaps] = []
+        self.claims: dict[int, list[Interval]] = {}
         self.inked: dict[int, list[Interval]] = {}
         self.owned: dict[int, list[tuple[int, float, float]]] = {}
         self.areas = np.array([complex(a.points.mean()) for a in space.areas], dtype=complex)
@@ -197,7 +196,6 @@ class Comparison:
         self.used_writings: set[int] = set()
         self.zones: list[Points] = []
         self.lettered: list[Points] = []
-        self.drawn_letters: list[int] = []
 
     def ours(self, numbers: Sequence[int]) -> tuple[KnownLines, npt.NDArray[np.int64], Numbers]:
         """Straight pieces of the paths of some elements, the element of each piece, and how far along its path it begins, mm."""
@@ -236,17 +234,16 @@ class Comparison:
         pattern = line_type(e.style).pattern
         return 2 * max((-x for x in pattern if x < 0), default=0.0) + ONE_PLACE if pattern else ONE_PLACE
 
-    def claimed(self) -> Overlaps:
-        """Their ink that belongs to elements."""
-        return together(self.claims)
+    def unclaimed(self) -> list[Left]:
+        """Their ink that belongs to no element."""
+        return left(self.theirs, self.claims)
 
-    def claim(self, parts: Sequence[tuple[int, float, float]], n: int) -> None:
-        """Claim pieces of theirs (piece, from, to) for element ``n``."""
-        self.owned[n] = self.owned.get(n, []) + list(parts)
-        if parts:
-            j, a, b = (np.array(x) for x in zip(*parts, strict=True))
-            z = np.zeros(len(parts))
-            self.claims.append(Overlaps(np.full(len(parts), -1), z, z, j.astype(np.int64), a.astype(float), b.astype(float), z, z))
+    def claim(self, parts: Iterable[tuple[int, float, float]], n: int | None = None) -> None:
+        """Claim pieces of theirs (piece, from, to), in their places or for element ``n`` elsewhere."""
+        for part in parts:
+            self.claims.setdefault(part[0], []).append(part[1:])
+            if n is not None:
+                self.owned.setdefault(n, []).append(part)
 
     def finding(self, n: int, deviation: float, remark: Remark | None, *, shift: complex | None = None, turn: float | None = None,
                  size: float | None = None, missing: bool = False, entities: tuple[int, ...] = (),

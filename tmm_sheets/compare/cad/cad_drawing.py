@@ -36,7 +36,7 @@ from tmm_sheets.compare.cad import (
 )
 from tmm_sheets.compare.cad.cad_comparison import CadFinding, CadOutcome, Comparison
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace, normal
-from tmm_sheets.compare.cad.line_fit import ONE_PLACE, Numbers, gaps, left, lines, overlaps, union
+from tmm_sheets.compare.cad.line_fit import ONE_PLACE, gaps, lines, overlaps, union
 from tmm_sheets.compare.cad.plan_ink import Figure, PlanInk, lies_along
 from tmm_sheets.compare.cad.plan_judge import JudgedPlans, judge_plans
 from tmm_sheets.compare.cad.plan_views import PlanRecord
@@ -47,7 +47,6 @@ from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.findings import Report, verdict, worst
 from tmm_sheets.compare.placing import BESIDE, Placing, links, moved, read_places, symbol
 from tmm_sheets.drawing.marks import Drawing, Points
-from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.sheets.views import arrangement
 from tmm_sheets.words import name_of, on_paper, paper, tell
@@ -107,12 +106,13 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     """
     state = Comparison(elements, space, moves, tolerance)
     _not_compared(state)
+    cad_lettering.texts(state)
     _right(state)
+    cad_lettering.drawn_letters(state)
     cad_extras.left_out(state, cad_extras.KINDS.keys() - cad_extras.FOUND_LAST)
-    cad_lettering.lettering(state)
     symbol_matching.hatching(state)
-    displaced_lines.straight(state, left(state.theirs, state.claimed()))
-    displaced_lines.shapes(state, left(state.theirs, state.claimed()))
+    displaced_lines.straight(state, state.unclaimed())
+    displaced_lines.shapes(state, state.unclaimed())
     displaced_lines.incomplete(state)
     symbol_matching.filled(state)
     symbol_matching.arrows(state)
@@ -143,44 +143,36 @@ def _leading_elsewhere(state: Comparison) -> None:
             state.found[n] = CadFinding(e, None, 0.0, codes.LEADS_ELSEWHERE(), e.middle, 5.0)
 
 
+LETTER = 4
+"""A stroke that is more than so many times as long as a letter is high is none of a letter."""
+
+
 def _right(state: Comparison) -> None:
     """Find the elements with ink everywhere along them, and where the others have some."""
-    numbers = [n for n, e in enumerate(state.elements) if state.paths[n] and e.kind != "hatch"]
+    numbers = [n for n in range(len(state.elements)) if state.paths[n]]
     ours, of, base = state.ours(numbers)
     every = overlaps(ours, state.theirs, state.tolerance)
+    # A long line that runs through a letter is no part of it.
+    most = np.array([LETTER * e.height if e.kind == "text" else np.inf for e in state.elements])
+    size = np.bincount(state.theirs.owner, state.theirs.length)[state.theirs.owner]
+    every = every.only(size[every.theirs] < most[of[every.ours]])
     state.in_place, state.in_place_of = every, of[every.ours]
     state.along = base[every.ours] + every.s0, base[every.ours] + every.s1
-    order = np.lexsort((state.along[0], state.in_place_of))
-    owner = state.in_place_of[order]
-    s0, s1 = (x[order] for x in state.along)
-    off = (np.abs(every.off0 + every.off1) / 2)[order]
-    bounds = np.searchsorted(owner, np.arange(len(state.elements) + 1))
-    right = np.zeros(len(state.elements), bool)
+    order = np.argsort(state.in_place_of, kind="stable")
+    run = every.s1 - every.s0
+    rows = np.split(order, np.searchsorted(state.in_place_of[order], np.arange(1, len(state.elements))))
     for n in numbers:
         if n in state.found:
             continue
-        p, q = bounds[n], bounds[n + 1]
         e, whole = state.elements[n], state.whole(n)
         lettered = [(a * whole, b * whole) for a, b in interruptions(e)]
-        parts = union([*zip(s0[p:q].tolist(), s1[p:q].tolist(), strict=True), *lettered], state.gap(e))
-        if parts and all(b - a <= state.tolerance + 1e-9 for a, b in gaps(parts, whole)):
-            # Between the dashes only ink of other elements can lie.
-            nearest = _nearest(s0[p:q], s1[p:q], off[p:q], whole, lettered)
-            typical = float(np.median(nearest) if line_type(e.style).pattern else nearest.max()) if len(nearest) else 0.0
-            state.found[n] = state.finding(n, min(typical, state.tolerance), None)
-            right[n] = True
+        parts = union([*zip(*(x[rows[n]].tolist() for x in state.along), strict=True), *lettered], state.gap(e))
+        if len(rows[n]) and all(b - a <= state.tolerance + 1e-9 for a, b in gaps(parts, whole)):
+            long = rows[n][run[rows[n]] >= run[rows[n]].max() / 2]  # shorter ones may be of lines that cross it
+            state.found[n] = state.finding(n, float(np.abs(every.off0[long] + every.off1[long]).min()) / 2, None)
+            state.claim(every.only(rows[n]).inked)
         else:
             state.inked[n] = parts
-    state.claims.append(every.only(right[state.in_place_of]))
-
-
-def _nearest(s0: Numbers, s1: Numbers, off: Numbers, whole: float, gaps: Sequence[tuple[float, float]]) -> Numbers:
-    """Distances of the nearest ink at points along an element of length ``whole`` but in its gaps, mm."""
-    t = np.linspace(0.0, whole, 25)[1:-1]
-    t = t[[not any(a <= x <= b for a, b in gaps) for x in t]]
-    on = (s0 - ONE_PLACE <= t[:, None]) & (t[:, None] <= s1 + ONE_PLACE)
-    nearest = np.where(on, off, np.inf).min(axis=1)
-    return np.asarray(nearest[np.isfinite(nearest)])
 
 
 WORD = re.compile(r"[^\W\d_]{4,}")

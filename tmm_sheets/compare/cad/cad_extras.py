@@ -25,7 +25,7 @@ from tmm_sheets.compare.cad.cad_comparison import (
     reach_of,
 )
 from tmm_sheets.compare.cad.cad_ink import Entity, normal
-from tmm_sheets.compare.cad.line_fit import KnownLines, Left, Numbers, common, extent, hanging_together, left, pieces, shapes
+from tmm_sheets.compare.cad.line_fit import KnownLines, Left, Numbers, common, extent, hanging_together, pieces, shapes
 from tmm_sheets.compare.cad.symbol_matching import AT_TIP
 from tmm_sheets.compare.codes import Number, joined
 from tmm_sheets.compare.elements import Element, grouped
@@ -114,7 +114,7 @@ def _set_aside(state: Comparison, numbers: Sequence[int], kind: str) -> None:
         e = state.elements[n]
         state.found[n] = CadFinding(e, None, 0.0, codes.NOT_DRAWN(), e.middle, 5.0, missing=True, absent=kind)
         if extent(state.inked.pop(n, [])) > DRAWN_SHARE * state.whole(n):
-            state.claims.append(state.in_place.only(state.in_place_of == n))
+            state.claim(state.in_place.only(state.in_place_of == n).inked)
     disc = (HINGE + 0.2) * np.exp(2j * np.pi * np.arange(12) / 12)
     state.zones += [e.centre + disc for e in (state.elements[n] for n in numbers) if e.kind == "circle" and e.radius <= HINGE]
 
@@ -129,16 +129,15 @@ SHORT_GAP = 4.5
 """Gap between two lines of the sheet, mm, that a line drawn through may close."""
 TOUCHING = 0.06
 """Distance of places that count as one, mm."""
-FILLED, PART = 3.0, 1.5
-"""How far from its place a filled area may be, mm, and a part of one that is there."""
+FILLED = 1.5
+"""How far from its place a filled area that is none may be, mm."""
 HEAP = 14.0
 """Width plus height of the smallest extra ink that is not put together with its neighbours, mm."""
 
 
 def extra(state: Comparison) -> tuple[ExtraStroke, ...]:
     """The extra ink, longest first; the findings of elements that are too long are changed accordingly."""
-    rest = left(state.theirs, state.claimed())
-    cad_lettering.strange_ink(state, rest)
+    rest = state.unclaimed()
     free = _outside_zones(state, rest)
     length, owner = state.theirs.length, state.theirs.owner
     along = np.cumsum(length) - length + owner  # strokes lie a millimetre apart
@@ -169,14 +168,11 @@ def extra(state: Comparison) -> tuple[ExtraStroke, ...]:
 
 def _mostly(state: Comparison) -> dict[int, tuple[float, int]]:
     """The element that most of a stroke belongs to, and how much, mm, by the number of the stroke."""
-    straight = np.array([e.kind == "line" for e in state.elements])
-    every, of = state.in_place, state.in_place_of
-    size = every.w1 - every.w0
-    keep = (size > 0.3) | ~straight[of]  # what only crosses a line is none of it
+    every = state.in_place
     owned = np.array([(j, n, b - a) for n, parts in state.owned.items() for j, a, b in parts]).reshape(-1, 3)
-    piece, owner = (np.concatenate((x[keep], owned[:, k].astype(np.int64))) for k, x in ((0, every.theirs), (1, of)))
+    piece, owner = (np.concatenate((x, owned[:, k].astype(np.int64))) for k, x in ((0, every.theirs), (1, state.in_place_of)))
     pairs, k = np.unique(np.stack((state.theirs.owner[piece], owner)), axis=1, return_inverse=True)
-    sums = np.bincount(k.ravel(), np.concatenate((size[keep], owned[:, 2])), pairs.shape[1])
+    sums = np.bincount(k.ravel(), np.concatenate((every.w1 - every.w0, owned[:, 2])), pairs.shape[1])
     return {int(stroke): (float(most), int(n)) for most, stroke, n in sorted(zip(sums, *pairs, strict=True))}
 
 
@@ -293,14 +289,11 @@ def _stroke(entity: Entity, size: float, z: Points, count: int = 1) -> ExtraStro
 def _extra_areas(state: Comparison, extra: KnownLines) -> Iterator[ExtraStroke]:
     """Extra filled areas; the heads of ``extra`` lines are told with these."""
     known = np.array([complex(h.mean()) for e in state.elements for h in e.fills], dtype=complex)
-    used = state.areas[sorted(state.used_areas)]
-    # Of what is drawn as an area another piece may be one, too: half a head.
-    reach = np.array([PART if (np.abs(used - z) < FILLED).any() else FILLED for z in known])
     for k, area in enumerate(state.space.areas):
         z = area.points
         around = float(np.abs(np.diff(np.append(z, z[:1]))).sum())
         if k in state.used_areas or not area.solid or around < 2.0:
             continue
-        if (np.abs(known - state.areas[k]) < reach).any() or extra.nearest(z, AT_TIP)[2].any():
+        if (np.abs(known - state.areas[k]) < FILLED).any() or extra.nearest(z, AT_TIP)[2].any():
             continue
         yield ExtraStroke("fill", state.space.entities[area.entity], around, middle_of(z), reach_of(z))

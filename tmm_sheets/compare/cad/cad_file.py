@@ -9,7 +9,7 @@ from __future__ import annotations
 import logging
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from io import BytesIO
@@ -214,7 +214,6 @@ class DxfReader:
         self.document = document
         self.file = file
         self.parts = self.points = 0
-        self.weights: dict[str, int] = {}
         self.patterns = {line.dxf.name.lower(): _pattern(line) for line in document.linetypes}
         scale = float(document.header.get("$LTSCALE", 1.0))
         self.dashes = {line.dxf.name.lower(): scale * max(_dashes(line), default=0.0) for line in document.linetypes}
@@ -270,10 +269,6 @@ class DxfReader:
         """
         entities: list[Entity] = []
         found: list[DrawnStroke | Area | Writing] = []
-        try:
-            self.count(parts=self._weight(layout))
-        except RecursionError:
-            raise CannotBuild(tell("{file}: its blocks are nested too deeply").format(file=self.file), tell(SMALLER)) from None
         parts = list(self._parts(layout))
         fine = self._fine(e for _, e, _ in parts)
         attributes = {e.dxf.text for _, e, _ in parts if e.dxftype() == "ATTRIB"}
@@ -358,24 +353,11 @@ class DxfReader:
             except (ValueError, TypeError, AttributeError, KeyError, ZeroDivisionError, RecursionError):
                 self.unread[e.dxftype()] += 1
 
-    def _weight(self, entities: Iterable[Any]) -> int:
-        """How many entities these come to with their blocks taken apart; a block in itself counts once."""
-        total = 0
-        for e in entities:
-            total += 1
-            key = "name" if e.dxftype() == "INSERT" else "geometry"  # the block that a dimension or a table is drawn by
-            name = str(e.dxf.get(key, "") or "") if e.dxf.is_supported(key) else ""
-            if name:
-                if name not in self.weights:
-                    self.weights[name] = 0
-                    self.weights[name] = self._weight(self.document.blocks.get(name) or ())
-                total += self.weights[name] if e.dxftype() != "INSERT" else max(e.mcount, 1) * (1 + self.weights[name])
-        return total
-
     def _apart(self, e: Any, of: _EntityLook | None, within: tuple[str, ...] = ()) -> Iterator[tuple[DXFEntity, _EntityLook]]:
         """Primitives of an entity; ``of`` is the look of the block reference or dimension it is part of."""
         from ezdxf.protocols import SupportsVirtualEntities, virtual_entities
 
+        self.count(parts=1)
         kind, look = e.dxftype(), self._look(e, of)
         if kind in PRIMITIVE or not (kind == "INSERT" or isinstance(e, SupportsVirtualEntities)):
             yield e, look

@@ -185,8 +185,7 @@ def report(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> Repo
         [{"kind": x.kind, "length_mm": round(x.length, 3), "at_mm": point(x.at), "where": str(x.entity), "number": k,
           "verdict": x.verdict, "count": x.count, "text": x.text, "entity": x.entity.tree}
          for k, x in enumerate(outcome.extras, 1)],
-        {"missing_views": [v.name for v in lost], "missing_tables": [v.name for v in lost if v in beside],
-         "not_drawn": sum(r.remark.code == "not-drawn" for r in records)},
+        {"missing_views": [v.name for v in lost], "missing_tables": [v.name for v in lost if v in beside]},
         drawing=path.name, space=laid.space.name, tolerance=pencil,
         placing={"scale": p.scale, "degrees": round(p.degrees, 4), "shift": point(p.shift), "mirrored": p.mirrored,
                  "share": round(laid.share, 4)},
@@ -228,37 +227,24 @@ def _record(found: ExaminedDrawing, f: CadFinding, follows: FindingRecord | None
 
 
 def _mistakes(found: ExaminedDrawing, lost: set[ElementView]) -> list[ToldMistake]:
-    """What is wrong, view by view: those built on a wrong step first, then those with the most red."""
+    """What is wrong, view by view: those built on a wrong step first, as they are drawn, then those with the most red."""
     of_view = {v: bad for v, some in found.outcome.by_view.items() if v not in lost and (bad := worst(some))}
-    first: dict[str, ElementView] = {}
-    for v, built in found.built.items():  # in the order of drawing
-        first.setdefault(built.said(), v)
-
-    def place(v: ElementView) -> tuple[bool, int, int]:
-        if v in found.built:
-            return False, list(found.built).index(v), 0
-        return True, -sum(f.verdict == "red" for f in of_view[v]), v.n
-
-    whole = [ToldMistake(tell("the whole drawing"), built_otherwise(key).said(), "red", named=True)
-             for key in filter(None, (found.mirrored,))]
-    return whole + [_mistake(found, v, of_view[v], first.get(found.built[v].said()) if v in found.built else None)
-                    for v in sorted(of_view, key=place)]
+    built = {v: r for v, r in of_built(found.built).items() if v in of_view}
+    others = sorted(of_view.keys() - built.keys(), key=lambda v: (-sum(f.verdict == "red" for f in of_view[v]), v.n))
+    return [_mistake(found, v, of_view[v], built.get(v)) for v in (*built, *others)]
 
 
-def _mistake(found: ExaminedDrawing, view: ElementView, bad: Sequence[CadFinding],
-             first: ElementView | None) -> ToldMistake:
-    """What is wrong in a view, its picture beside it; ``first`` is the view in which the same was done, of one that is built so."""
-    built, after, again = found.built.get(view), [], ""
+def _mistake(found: ExaminedDrawing, view: ElementView, bad: Sequence[CadFinding], built: FindingRecord | None) -> ToldMistake:
+    """What is wrong in a view, its picture beside it; ``built`` tells what its plan was built on."""
+    after, again = [], ""
     rows = [(f.element.number, f.element, f.what) for f in bad if not f.follows]
-    if built is not None:
-        led = [f for f in bad if f.follows and f.element.kind == "line" and f.element.role in ("vector", "link")]
-        if first is not None and first != view:
-            again = tell('the same as in view "{view}": it follows from there').format(view=first.name)
-        if led:
-            told_all = tell("up to {by} mm off, as follows from the mistake: {lines}")
-            after = [told_all.format(by=told(millimetres(max(f.deviation for f in led))),
-                                     lines=", ".join(dict.fromkeys(f.element.name for f in led)))]
-    return told_view(view, built, bad, rows, _picture(found, view, bad), after, again[:1].upper() + again[1:])
+    if built is not None and built.follows is not None:
+        again = tell('the same as in view "{view}": it follows from there').format(view=built.follows.view)
+    if led := [f for f in bad if f.follows and f.element.kind == "line" and f.element.role in ("vector", "link")]:
+        told_all = tell("up to {by} mm off, as follows from the mistake: {lines}")
+        after = [told_all.format(by=told(millimetres(max(f.deviation for f in led))),
+                                 lines=", ".join(dict.fromkeys(f.element.name for f in led)))]
+    return told_view(view, found.built.get(view), bad, rows, _picture(found, view, bad), after, again[:1].upper() + again[1:])
 
 
 def _picture(found: ExaminedDrawing, view: ElementView, bad: Sequence[CadFinding]) -> StoryPicture | None:

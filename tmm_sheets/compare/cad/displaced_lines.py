@@ -221,8 +221,7 @@ def _laid(state: Comparison, n: int, free: KnownLines, rest: Sequence[Left], sta
                             entities=state.entities_of(rest[k].piece for k in near.theirs[kept].tolist()))
     def take() -> None:
         state.found[n] = finding
-        state.claim([(rest[k].piece, rest[k].a + float(near.w0[i]), rest[k].a + float(near.w1[i])) for i in kept.tolist()
-                     for k in (int(near.theirs[i]),)], n)
+        state.claim([(rest[k].piece, rest[k].a + a, rest[k].a + b) for k, a, b in near.only(kept).inked], n)
 
     return _Trial(False, max(worst, as_a_whole), n, near.theirs[kept], near.w1[kept] - near.w0[kept], take)
 
@@ -257,7 +256,7 @@ def incomplete(state: Comparison) -> None:
         remark = said(size=Number(f"{b - a:.1f}"), place=place(at))
         state.found[n] = state.finding(n, max(b - a, state.tolerance), remark, size=-(b - a),
                                        entities=state.entities_of(mine.theirs), at=at)
-        state.claims.append(mine)
+        state.claim(mine.inked)
 
 
 def _missing(state: Comparison, n: int) -> float:

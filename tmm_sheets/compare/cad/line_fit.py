@@ -6,7 +6,7 @@ count. Points are complex.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -25,8 +25,6 @@ doubt.
 """
 ONE_PLACE = 0.3
 """What lies as near as this, mm, is at one place, or along one line."""
-ASKEW = 0.008
-"""A turn up to this beside quarter turns is none, rad."""
 AT_ONCE = 4096
 """Points whose nearest lines are looked for at once: what is about them stays in memory."""
 HIT = 1.0
@@ -174,12 +172,11 @@ def lay(ours: KnownLines, points: Points, long: KnownLines, theirs: KnownLines, 
     shift = np.concatenate((ours.a[i] - turn * long.a[j], ours.b[i] + turn * long.a[j]))
     turn = np.concatenate((turn, -turn))
     size = float(np.ptp(long.a.real) + np.ptp(long.a.imag)) / float(np.ptp(points.real) + np.ptp(points.imag))
-    ok = (np.abs((np.angle(turn) + np.pi / 4) % (np.pi / 2) - np.pi / 4) < ASKEW) & (np.abs(turn) * size > 0.05) & (
-        np.abs(turn) * size < 2.0)
+    ok = (np.abs(turn) * size > 0.05) & (np.abs(turn) * size < 2.0)
     ok &= ~np.full(len(turn), to_scale) | (np.abs(np.abs(turn) - 1) < NEARLY)
     turn, shift = turn[ok], shift[ok]
     at = (turn * long.a.mean() + shift) / CELL
-    alike = np.round(np.stack((300 * np.log(np.abs(turn)), np.angle(turn) * 2 / np.pi, at.real, at.imag)))
+    alike = np.round(np.stack((300 * np.log(np.abs(turn)), 300 * np.angle(turn), at.real, at.imag)))
     turn, shift = (x[np.unique(alike, axis=1, return_index=True)[1]] for x in (turn, shift))
     found = [Placing(complex(t), complex(d), mirrored) for t, d in zip(turn, shift, strict=True)]
     few, many = points[:: max(len(points) // FEW, 1)], points[:: max(len(points) // 1500, 1)]
@@ -288,17 +285,15 @@ class Overlaps(NamedTuple):
     off0: Numbers
     off1: Numbers
 
-    def only(self, keep: npt.NDArray[np.bool_]) -> Overlaps:
+    @property
+    def inked(self) -> list[tuple[int, float, float]]:
+        """Their pieces, and from where to where along each."""
+        return list(zip(self.theirs.tolist(), self.w0.tolist(), self.w1.tolist(), strict=True))
+
+    def only(self, keep: npt.NDArray[np.bool_] | npt.NDArray[np.intp]) -> Overlaps:
         """The rows to keep."""
         ours, s0, s1, theirs, w0, w1, off0, off1 = self
         return Overlaps(ours[keep], s0[keep], s1[keep], theirs[keep], w0[keep], w1[keep], off0[keep], off1[keep])
-
-
-def together(parts: Sequence[Overlaps]) -> Overlaps:
-    """The rows of all."""
-    ours, theirs = np.concatenate([p.ours for p in parts]), np.concatenate([p.theirs for p in parts])
-    s0, s1, w0, w1, off0, off1 = (np.concatenate([p[k] for p in parts]).astype(float) for k in (1, 2, 4, 5, 6, 7))
-    return Overlaps(ours, s0, s1, theirs, w0, w1, off0, off1)
 
 
 def overlaps(ours: KnownLines, theirs: KnownLines, reach: float, steep: float = STEEP, flat: float = FLAT) -> Overlaps:
@@ -366,20 +361,10 @@ class Left(NamedTuple):
     b: float
 
 
-def left(theirs: KnownLines, claimed: Overlaps) -> list[Left]:
-    """The stretches of their pieces, longer than LEAST, that no overlap claims."""
-    found: list[Left] = []
-    order = np.argsort(claimed.theirs, kind="stable")
-    j, w0, w1 = claimed.theirs[order], claimed.w0[order].tolist(), claimed.w1[order].tolist()
-    first = np.searchsorted(j, np.arange(len(theirs.a) + 1))
-    length = theirs.length.tolist()
-    for n, (p, q) in enumerate(zip(first.tolist(), first[1:].tolist(), strict=False)):
-        if p == q:
-            found.append(Left(n, 0.0, length[n]))
-            continue
-        parts = union(zip(w0[p:q], w1[p:q], strict=True), LEAST)
-        found.extend(Left(n, a, b) for a, b in gaps(parts, length[n]) if b - a > LEAST)
-    return found
+def left(theirs: KnownLines, claimed: Mapping[int, Sequence[Interval]]) -> list[Left]:
+    """What claims, by the numbers of the pieces, leave of their pieces: whole ones, and stretches longer than LEAST."""
+    return [Left(n, a, b) for n, size in enumerate(theirs.length.tolist()) for a, b in gaps(union(claimed.get(n, ()), LEAST), size)
+            if b - a > LEAST or b - a == size]
 
 
 def pieces(theirs: KnownLines, rest: Sequence[Left]) -> KnownLines:

@@ -63,17 +63,15 @@ def plan_report(project: str, sheet: int, path: Path, space: DrawingSpace, judge
                *(r for v in views for r in v.lines.values())]
     extra = _unclaimed(space, judged)
     count = Counter(r.verdict for r in records)
-    absent = sum(r.remark.code == "not-drawn" for r in records)
     said = tell("{green} green, {amber} amber, {red} red, {skipped} not judged; {extra} extra").format(
         green=count["green"], amber=count["amber"], red=count["red"], skipped=count["not-judged"], extra=len(extra))
     mistakes = tuple(_told(v, judged) for v in views if (v.whole is not None and v.whole.verdict == "red") or v.wrong)
-    whole = (ToldMistake(tell("the whole drawing"), r.remark.said(), "red", named=True) for r in start if not r.view)
     head = tuple(map(tell, ("title", "plan", "verdict", "right", "wrong", "not drawn")))
     verdicts = tuple("red" if v.wrong or (v.whole is not None and v.whole.verdict == "red") else "" for v in views)
     return reported(
         "cad", project, sheet, path, (tell("tolerance {tolerance} mm").format(tolerance=told(f"{pencil:g}")), said), records, start,
-        (*whole, *mistakes), [StoryTable(tell("Views"), head, tuple(map(_row, views)), verdicts)],
-        (*_not_drawn(views), *_figures_without_title(judged)), [*notes, *_notes(judged)], extra, {"not_drawn": absent},
+        mistakes, [StoryTable(tell("Views"), head, tuple(map(_row, views)), verdicts)],
+        (*_not_drawn(views), *_figures_without_title(judged)), [*notes, *_notes(judged)], extra,
         drawing=path.name, space=space.name, tolerance=pencil, views=[_listed_view(v) for v in views])
 
 

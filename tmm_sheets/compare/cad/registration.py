@@ -6,14 +6,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.cad_lettering import meant
 from tmm_sheets.compare.cad.line_fit import (
-    ASKEW,
     DOUBTLESS,
-    HIT,
     ONE_PLACE,
     RATIOS,
     KnownLines,
@@ -171,10 +168,6 @@ PART = 100.0
 """Width plus height of the smallest part of a sheet that is looked for, mm."""
 LONGEST = 40
 """Longest lines of a drawing on which ours are laid."""
-LETTERS, MANY, MORE = 6, 0.3, 3
-"""So many texts tell how a drawing is turned, else its lines, if that share has one direction and so many times less is upright."""
-ALIGNED = 1e-3
-"""What is one direction, rad."""
 
 @dataclass(frozen=True)
 class Registration:
@@ -187,23 +180,7 @@ class Registration:
 
 
 def register(known: Sequence[KnownSheet], ink: CadInk) -> Registration:
-    """Lay a drawing over the sheet it fits best: by its frame, else by any of its lines or views, even mirrored or of one view.
-
-    One turned as a whole, as in a user coordinate system, is turned back first.
-    """
-    back = [Placing(complex(np.exp(-1j * angle))) if (angle := _askew(space)) else None for space in ink.spaces]
-    if not any(back):
-        return _lay(known, ink)
-    spaces = [space.placed(turn) if turn else space for space, turn in zip(ink.spaces, back, strict=True)]
-    laid = _lay(known, replace(ink, spaces=tuple(spaces)))
-    k = next(k for k, space in enumerate(spaces) if space is laid.space)
-    if laid.share < SURE and (upright := _lay(known, ink)).share > laid.share:
-        return upright
-    return replace(laid, space=ink.spaces[k], placing=laid.placing.after(back[k] or Placing()))
-
-
-def _lay(known: Sequence[KnownSheet], ink: CadInk) -> Registration:
-    """The same of a drawing whose frame and tables, or lettering, are upright or lie on a side."""
+    """Lay a drawing over the sheet it fits best, turned in any way: by its frame, else by any lines, mirrored, or by one view."""
     tried = [*_by_lines(known, ink, mirrored=False)]
     if _best(tried).share < SURE:
         tried += _by_lines(known, ink, mirrored=True)
@@ -255,27 +232,6 @@ def _lines(some: Iterable[Element]) -> KnownLines:
     return lines([e.points for e in some if e.kind not in ("text", "hatch", "fill")])
 
 
-def _askew(space: DrawingSpace) -> float:
-    """The angle by which a drawing is turned beside quarter turns, rad: that of its lettering, else of its lines."""
-    angles = np.array([w.angle for w in space.writings])
-    weights = np.ones(len(angles))
-    if len(angles) < LETTERS:
-        angles, weights = np.angle(space.lines.b - space.lines.a), space.lines.length
-    if not len(angles) or not weights.any():
-        return 0.0
-    bins, k = np.unique(np.round(_beside(angles) / ALIGNED), return_inverse=True)
-    most = float(bins[np.bincount(k, weights).argmax()]) * ALIGNED
-    near, upright = (np.abs(_beside(angles - one)) < ALIGNED for one in (most, 0.0))
-    if abs(most) < ASKEW or weights[near].sum() < max(MANY * weights.sum(), MORE * weights[upright].sum()):
-        return 0.0
-    return most + float(np.median(_beside(angles - most)[near]))
-
-
-def _beside(angles: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Angles beside the nearest quarter turn, rad."""
-    return np.asarray((angles + np.pi / 4) % (np.pi / 2) - np.pi / 4)
-
-
 def _best(tried: Sequence[Registration]) -> Registration:
     """The first among equals (model space, not mirrored); where little fits, the sheet with more of the words counts."""
     if max(laid.share for laid in tried) >= SURE:
@@ -291,19 +247,11 @@ def _words(laid: Registration) -> float:
 
 
 def _refined(laid: Registration, unit: float | None) -> Registration:
-    """The placing refined: on all lines if most are in their places, else on the frame if there is one."""
-    theirs, z, free = laid.space.lines, line_points(laid.known.elements), True
-    if laid.share < SURE:
-        # The frame is the largest rectangle of main lines.
-        rectangles = (e for e in laid.known.elements if e.view.n == 0 and e.kind == "curve" and e.style == "main")
-        frame = lines([max(rectangles, key=lambda e: e.length).points]).points(2.0)
-        if theirs.share(laid.placing.back(frame), HIT / laid.placing.scale) > 0.9:
-            z = frame
-        else:
-            free = False  # too few lines for a fit of scale and angle
+    """The placing refined on all lines; with few of them there, by its shift only."""
+    z = line_points(laid.known.elements)
     z = z[:: max(len(z) // 1500, 1)]
-    placing = snapped(z, theirs, refine(z, theirs, laid.placing, free=free).placing, unit)
-    return replace(laid, placing=placing)
+    theirs = laid.space.lines
+    return replace(laid, placing=snapped(z, theirs, refine(z, theirs, laid.placing, free=laid.share >= SURE).placing, unit))
 
 
 DRAWN_AT = {2.0: "1:2", 2.5: "1:2.5", 4.0: "1:4", 5.0: "1:5", 10.0: "1:10", 0.5: "2:1", 0.4: "2.5:1", 0.25: "4:1", 0.2: "5:1"}

@@ -14,7 +14,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, FARTHEST, SIZE_OF_SYMBOL, CadFinding, Comparison
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, pointed
-from tmm_sheets.compare.cad.line_fit import ONE_PLACE, left, lines, overlaps, pieces
+from tmm_sheets.compare.cad.line_fit import ONE_PLACE, lines, overlaps, pieces
 from tmm_sheets.compare.codes import Number, Remark, joined
 from tmm_sheets.compare.findings import shifted, turned, verdict
 from tmm_sheets.drawing.marks import Points
@@ -125,7 +125,7 @@ def _found_at(middle: complex, z: complex, finding: CadFinding) -> complex:
 
 def _drawn_aside(state: Comparison, arrow: _Arrow, tip: complex) -> bool:
     """Whether a free line ends at a head: then ink of others lies in the arrow's place, and this line is what was drawn for it."""
-    rest = left(state.theirs, state.claimed())
+    rest = state.unclaimed()
     free = pieces(state.theirs, rest)
     for tail in (arrow.tail + tip - arrow.tip, arrow.tail):
         line = lines([np.array([tail, tip])])
@@ -134,8 +134,7 @@ def _drawn_aside(state: Comparison, arrow: _Arrow, tip: complex) -> bool:
     else:
         return False
     near = overlaps(line, free, ONE_PLACE)
-    state.claim([(rest[j].piece, rest[j].a + float(a), rest[j].a + float(b)) for j, a, b in zip(
-        near.theirs.tolist(), near.w0.tolist(), near.w1.tolist(), strict=True)], arrow.n)
+    state.claim([(rest[j].piece, rest[j].a + a, rest[j].a + b) for j, a, b in near.inked], arrow.n)
     shift = (tip + tail - arrow.tip - arrow.tail) / 2
     turn = float(np.degrees(np.angle((tip - tail) / (arrow.tip - arrow.tail))))
     off = max(abs(tip - arrow.tip), abs(tail - arrow.tail))
@@ -189,26 +188,15 @@ def filled(state: Comparison) -> None:
 
 
 def hatching(state: Comparison) -> None:
-    """Find the hatchings: by their own strokes, or by anything hatched in their places."""
+    """Find the hatchings that are not drawn stroke by stroke by anything hatched in their places."""
     numbers = [n for n, e in enumerate(state.elements) if e.kind == "hatch" and n not in state.found]
-    if not numbers:
-        return
-    ours, of, _ = state.ours(numbers)
-    near = overlaps(ours, state.theirs, state.tolerance)
-    owner = of[near.ours]
     slanting = np.abs(np.abs(np.angle((state.theirs.b - state.theirs.a) ** 2)) - pi / 2) < 0.6
     middles = (state.theirs.a + state.theirs.b) / 2
     patterns = np.array([complex(a.points.mean()) for a in state.space.areas if not a.solid], dtype=complex)
-    for n in numbers:
-        mine, whole = owner == n, state.whole(n)
-        if float((near.s1 - near.s0)[mine].sum()) > 0.8 * whole:
-            state.found[n] = state.finding(n, 0.0, None)
-            state.claims.append(near.only(mine))
     left_over = np.zeros(len(state.theirs.a), bool)
-    left_over[[r.piece for r in left(state.theirs, state.claimed())]] = True
+    left_over[[r.piece for r in state.unclaimed()]] = True
     for n in numbers:
-        if n in state.found:
-            continue
+        state.inked.pop(n, None)
         box = Box.around(state.elements[n].points, ASIDE).corners
         strokes = np.flatnonzero(slanting & left_over & _inside(state.theirs.a, box) & _inside(state.theirs.b, box))
         here = slanting & left_over & _inside(middles, Box.around(state.elements[n].points, 1.5).corners)
