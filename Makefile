@@ -117,14 +117,12 @@ $(VENV)/.made:
 	$(PYTHON) -m venv $(VENV)
 	@touch $@
 
-$(VENV)/.installed: $(VENV)/.made $(if $(LOCKED),$(VENV)/.locked) pyproject.toml $(wildcard templates/locale/*/*/*.po)
-	$(BIN)/python -m pip $(EDITABLE) .
-	@touch $@
+# The second target has what the first one has.
+$(VENV)/.installed $(VENV)/.tested: $(VENV)/.made $(if $(LOCKED),$(VENV)/.locked) pyproject.toml $(wildcard templates/locale/*/*/*.po)
+	$(BIN)/python -m pip $(EDITABLE) '.$(if $(filter %.tested,$@),[test])'
+	@touch $(VENV)/.installed $@
 
-$(VENV)/.tested: $(VENV)/.installed
-	$(BIN)/python -m pip $(EDITABLE) '.[test]'
-	@touch $@
-
+# Compiling every module of every library takes as long as all the rest; what is imported is compiled then.
 $(VENV)/.locked: $(VENV)/.made tests/lock.txt
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement tests/lock.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes --requirement tests/lock.txt
 	@touch $@

@@ -5,6 +5,8 @@ import os
 import shutil
 import sys
 import tempfile
+from pathlib import Path
+from time import monotonic, sleep
 
 # The workers fill the processors: threads of a library beside them wait for one another, a sixth of the time of comparing.
 os.environ |= dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENCV_FOR_THREADS_NUM"), "1")
@@ -12,10 +14,10 @@ os.environ |= dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM
 import pytest
 from hypothesis import settings
 
-from tmm_sheets import kept
+from tmm_sheets import apart, kept
 
 # A busy machine is no mistake of the program: time is measured by benchmarks, never by tests.
-settings.register_profile("few", deadline=None, max_examples=20)
+settings.register_profile("few", deadline=None, max_examples=10)
 settings.register_profile("many", deadline=None, max_examples=400)  # make trials
 settings.load_profile("few")
 
@@ -24,6 +26,11 @@ os.environ["LANGUAGE"] = "en"  # messages are compared in the language of the co
 OWN_CACHE = "" if "PYTEST_XDIST_WORKER" in os.environ else tempfile.mkdtemp(prefix="tmm-sheets-tests-")
 if OWN_CACHE:
     os.environ[kept.FOLDER] = OWN_CACHE
+SHARED = os.environ[kept.FOLDER]
+COMPILED = Path(f"{SHARED}-compiled")
+"""There as soon as modules are compiled, those of the tests above all: pytest does more with these than Python does."""
+if OWN_CACHE and any(Path(__file__).parent.glob("*/__pycache__/test_*")):
+    COMPILED.touch()
 os.environ["TMM_SHEETS_CONFIG"] = ""  # nobody's own names
 # Byte code is kept, that of the tests and of the programs they start: the next one begins sooner.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -48,13 +55,37 @@ def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: rank.get(item.nodeid.partition("::")[0], len(rank)))
 
 
+def pytest_collection():
+    """While the first worker compiles all that is imported the others wait, a minute at most: it would be done twice."""
+    end = monotonic() + 60
+    while os.environ.get("PYTEST_XDIST_WORKER", "gw0") != "gw0" and not COMPILED.exists() and monotonic() < end:
+        sleep(0.1)
+
+
+def pytest_collection_finish():
+    """What has been imported and collected stays to the end: it is no garbage to be looked for."""
+    COMPILED.touch()
+    gc.freeze()
+
+
 def pytest_unconfigure():
     """Of all workers the one that began it removes the folder of kept sheets."""
     if OWN_CACHE:
         shutil.rmtree(OWN_CACHE, ignore_errors=True)
+        COMPILED.unlink(missing_ok=True)
 
 
-SHARED = os.environ[kept.FOLDER]
+TRIED_APART = ("test_doors", "test_pdf_bombs")
+"""Files that try the process in which strangers' drawings are read; tests/page has it as well."""
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _read_here(request):
+    """All others read drawings in their own process: a new one imports as long as most drawings are read."""
+    with pytest.MonkeyPatch.context() as patch:
+        if request.path.stem not in TRIED_APART:
+            patch.setattr(apart, "carried_out", lambda work, path, *_, **__: work(path))
+        yield
 
 
 class _Patch(pytest.MonkeyPatch):

@@ -6,11 +6,12 @@ import os
 import re
 import subprocess
 import sys
+from itertools import product
 from pathlib import Path
 
 import pytest
 
-from tests.few import seldom
+from tests.few import few, seldom
 from tests.project_files import EVEN, SLIDER, from_file, write
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
@@ -67,9 +68,9 @@ def test_headings_are_those_of_the_whole_files():
         assert entry == catalogue.ShippedProject(entry.name, variant.project.title, variant.project.variant, variant.sheets)
 
 
-@pytest.mark.parametrize("arguments", [[], ["--help"], ["--version"], ["list"], ["build", "--help"]])
-def test_what_reads_no_project_loads_neither_models_nor_numbers(arguments):
-    code = f"import sys; from tmm_sheets.__main__ import run; run({arguments}); print(*sys.modules, sep='\\n')"
+def test_what_reads_no_project_loads_neither_models_nor_numbers():
+    words = [[], ["--help"], ["--version"], ["list"], ["build", "--help"]]
+    code = f"import sys; from tmm_sheets.__main__ import run; [*map(run, {words})]; print(*sys.modules, sep='\\n')"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60,
                           env={**os.environ, "PYTHONPATH": str(ROOT)})  # fmt: skip
     loaded = set(done.stdout.splitlines())
@@ -493,9 +494,11 @@ def test_protocol_of_all_plans(capsys):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
-@pytest.mark.parametrize("unbuffered", ["", "1"])  # a full buffer fails when it is flushed, and once more at the end
-@pytest.mark.parametrize("arguments", [["solve", "lugansk/shaper", "--part", "gear"], ["--version"], ["list"]])
+@pytest.mark.parametrize(("arguments", "unbuffered"), few(
+    product((["solve", "lugansk/shaper", "--part", "gear"], ["--version"], ["list"]), ("", "1")),
+    (["solve", "lugansk/shaper", "--part", "gear"], ""), (["--version"], ""), (["list"], "1")))
 def test_standard_output_is_full(arguments, unbuffered, monkeypatch):
+    """A full buffer fails when it is flushed, and once more at the end; without one every line does."""
     monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
     with open("/dev/full", "w") as full:
         done = command(*arguments, capture_output=False, stdout=full, stderr=subprocess.PIPE)

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import tomllib
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -36,15 +37,22 @@ def command(*arguments, console, **options):
     return subprocess.run([sys.executable, "-m", "tmm_sheets", *map(str, arguments)], **options)
 
 
-@pytest.mark.parametrize("console", few(sorted(CONSOLES.keys() - {"utf-8"}), "C"))
-def test_redirected_output_is_utf_8(console, tmp_path, capsys):
+OTHERS = sorted(CONSOLES.keys() - {"utf-8"})
+
+
+@pytest.mark.parametrize(("line", "console"), few(
+    product(("show sixbar/6:3", "protocol lugansk/cam_flat"), OTHERS), ("show sixbar/6:3", "C")))
+def test_redirected_output_is_utf_8(line, console, capsys):
     """Greek and subscripts stand in all of these; the expected text is what the command says in this process."""
-    for line in ("show sixbar/6:3", "protocol lugansk/cam_flat"):
-        done = command(*line.split(), console=console)
-        assert (done.returncode, done.stderr) == (0, b"")
-        assert run(line.split()) == 0
-        assert done.stdout.decode("utf-8") == capsys.readouterr().out
-        assert max(done.stdout.decode("utf-8")) > "\u0370"
+    done = command(*line.split(), console=console)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert run(line.split()) == 0
+    assert done.stdout.decode("utf-8") == capsys.readouterr().out
+    assert max(done.stdout.decode("utf-8")) > "\u0370"
+
+
+@pytest.mark.parametrize("console", few(OTHERS, "C"))
+def test_results_and_tables_are_utf_8(console, tmp_path):
     done = command("solve", "press", "--json", "-", "--part", "flywheel", console=console)
     assert json.loads(done.stdout.decode("utf-8"))["project"] == "press"
     done = command("compare", "lugansk/cam_flat", "--template", "-o", tmp_path, console=console)

@@ -100,7 +100,7 @@ def test_what_is_right_is_judged_right(name, tmp_path):
     """Every vector, line and sense of every plan, all round the turn; and wrong by a quarter is told as wrong, in words."""
     path = tmp_path / "page.html"
     path.write_text(made(name, (1, 2)), encoding="utf-8")
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(path.as_uri())
         page.until(READY)
         found = page.now(EVERY)
@@ -113,7 +113,7 @@ def test_what_is_right_is_judged_right(name, tmp_path):
 def test_typical_wrong_guesses_and_the_score(tmp_path):
     path = tmp_path / "page.html"
     path.write_text(made("lugansk/shaper"), encoding="utf-8")
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(f"{path.as_uri()}#plan=accelerations&step=1&phi=125.97&mode=guess")
         page.until(READY)
         for n, way, long, key, part in TYPICAL:
@@ -145,7 +145,7 @@ def test_a_vector_that_is_nothing(tmp_path):
     """In the dead position the rocker stands: Coriolis and normal acceleration are nothing, and only a point is right."""
     path = tmp_path / "page.html"
     path.write_text(made("lugansk/shaper"), encoding="utf-8")
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(f"{path.as_uri()}#plan=accelerations&step=2&mode=guess")
         page.until(READY)
         page.now("turn(record.motion.start)")

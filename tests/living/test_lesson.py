@@ -57,7 +57,7 @@ def test_the_address_tells_the_moment(tmp_path):
     path = tmp_path / "page.html"
     path.write_text(made("lugansk/shaper"), encoding="utf-8")
     record = record_of(made("lugansk/shaper"))
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(f"{path.as_uri()}#plan=accelerations&step=2&phi=125.97")
         page.until("!!document.querySelector('html[data-ready]')")
         page.now("goStop(1, true)")
@@ -88,7 +88,7 @@ def test_a_vector_is_there_when_its_term_is_filled_in(tmp_path):
     path = tmp_path / "page.html"
     path.write_text(made("lugansk/shaper"), encoding="utf-8")
     lesson = lesson_of(record_of(made("lugansk/shaper")), "force-5")
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(f"{path.as_uri()}#plan=force-5&step=1&phi=126")
         page.until("!!document.querySelector('html[data-ready]')")
         for n in range(len(lesson["stops"])):
@@ -105,7 +105,7 @@ def test_the_lesson_on_paper(tmp_path):
     path = tmp_path / "page.html"
     path.write_text(made("lugansk/shaper"), encoding="utf-8")
     stops = lesson_of(record_of(made("lugansk/shaper")), "accelerations")["stops"]
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(f"{path.as_uri()}#plan=accelerations&step=3&phi=126")
         page.until("!!document.querySelector('html[data-ready]')")
         page.now("dispatchEvent(new Event('beforeprint'))")
@@ -132,7 +132,7 @@ def test_marks_by_keyboard(tmp_path):
     """Arrows go from the drawing over the steps in sight, each called by its name; Enter asks; in a lesson it goes to the stop."""
     path = tmp_path / "page.html"
     path.write_text(made("lugansk/shaper"), encoding="utf-8")
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(path.as_uri())
         page.until("!!document.querySelector('html[data-ready]')")
         page.now("$('sheet').focus()")
@@ -163,7 +163,7 @@ def test_a_lesson_plays(tmp_path):
     """Up to its last stop, by itself."""
     path = tmp_path / "page.html"
     path.write_text(made("lugansk/shaper").replace("const STOP_MS = 4000", "const STOP_MS = 300"), encoding="utf-8")
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(f"{path.as_uri()}#plan=velocities&step=4&phi=126")
         page.until("!!document.querySelector('html[data-ready]')")
         page.now("playLesson(true)")
@@ -184,7 +184,7 @@ def test_the_film_is_as_long_as_the_lesson(tmp_path):
     cv2 = pytest.importorskip("cv2")
     path, film = tmp_path / "page.html", tmp_path / "film.webm"
     path.write_text(made("lugansk/shaper").replace("FRAMES = 12", "FRAMES = 2"), encoding="utf-8")
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(f"{path.as_uri()}#plan=force-1&step=1&phi=126")
         page.until("!!document.querySelector('html[data-ready]')")
         page.now(KEPT)
@@ -208,7 +208,7 @@ def test_the_code_of_an_address(tmp_path):
     cv2, path = pytest.importorskip("cv2"), tmp_path / "page.html"
     path.write_text(made("lugansk/shaper"), encoding="utf-8")
     address = "https://example.org/tmm/shaper.html#plan=accelerations&step=5&phi=126&crank.length=0.082"
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(f"{path.as_uri()}#plan=accelerations&step=5&phi=126")
         page.until("!!document.querySelector('html[data-ready]')")
         page.now("copyLink()")
@@ -241,7 +241,7 @@ def test_letters_of_a_lesson_are_apart(name, tmp_path):
     """At any angle of the turn: of a plan seldom two letterings lie upon each other, though all are there."""
     path = tmp_path / "page.html"
     path.write_text(made(name), encoding="utf-8")
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(path.as_uri())
         page.until("!!document.querySelector('html[data-ready]')")
         shares = page.now(COVERED)
@@ -255,7 +255,7 @@ def test_reachable_angles(rod, tmp_path):
     """Where the rod reaches its guide, by places of the rocker's end written down here; nothing is told if it does all round."""
     path = tmp_path / "page.html"
     path.write_text(made("sixbar/1:1"), encoding="utf-8")
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(f"{path.as_uri()}#plan=velocities&step=3&phi=126")
         page.until("!!document.querySelector('html[data-ready]')")
         page.now(f"setGiven('group[1].length', {rod})")

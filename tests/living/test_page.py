@@ -380,7 +380,7 @@ def test_no_step_is_told_before_what_it_is_made_of(name, tmp_path):
     """On every sheet; and a plan that is played alone tells how its links turn, too."""
     path = tmp_path / "page.html"
     path.write_text(made(name), encoding="utf-8")
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(path.as_uri())
         page.until("!!document.querySelector('html[data-ready]')")
         assert page.now(TOLD_TOO_EARLY) == []
@@ -403,7 +403,7 @@ def test_names_of_the_sheet_are_found(tmp_path):
     """By letter and plan, by id, by the path of a result; what there is not is told."""
     path, record = tmp_path / "page.html", record_of(made("lugansk/shaper"))
     path.write_text(made("lugansk/shaper"), encoding="utf-8")
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(path.as_uri())
         page.until("!!document.querySelector('html[data-ready]')")
         inertia = record["results"]["flywheel.J_flywheel"]["step"]
@@ -438,7 +438,7 @@ def test_a_plan_in_motion_has_room_and_tells_when_its_scale_follows(name, tmp_pa
     """At every angle all that is drawn is in sight; a scale other than the common one is told."""
     path = tmp_path / "page.html"
     path.write_text(made(name, (1,)), encoding="utf-8")
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(path.as_uri())
         page.until("!!document.querySelector('html[data-ready]')")
         page.now("tmm.open('turn')")
@@ -461,7 +461,7 @@ def test_a_click_beside_a_line_means_it(tmp_path):
     """In motion, by a real pointer 7 px off a link; far from everything nothing is meant."""
     path = tmp_path / "page.html"
     path.write_text(made("lugansk/shaper", (1,)), encoding="utf-8")
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
         page.open(path.as_uri())
         page.until("!!document.querySelector('html[data-ready]')")
@@ -494,7 +494,7 @@ def test_what_is_clicked_in_motion_has_its_values_at_this_angle(tmp_path):
     path, text, angles = tmp_path / "page.html", made("lugansk/shaper", (1,)), (2.5, 1.0)
     path.write_text(text, encoding="utf-8")
     points = results.told(Project(catalogue.read("lugansk/shaper")), ["velocities"], phi=angles)["velocities"]["points"]
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(path.as_uri())
         page.until("!!document.querySelector('html[data-ready]')")
         page.now("tmm.open('turn'); tmm.ask('velocities/d')")
@@ -528,7 +528,7 @@ def test_arms_are_as_long_as_the_mechanism_is(name, arm, welds, tmp_path):
     frame = record["sheets"][0]["frames"][0]
     pivot = complex(*frame["origin"]) + complex(*record["steps"]["positions/D"]["value"]) / frame["mu"][0]
     long = abs(complex(*free["geometry"]["line"][1]) - pivot)
-    with browser(tmp_path / "profile") as page:
+    with browser() as page:
         page.open(path.as_uri())
         page.until("!!document.querySelector('html[data-ready]')")
         page.now("tmm.open('turn')")
@@ -559,7 +559,7 @@ def test_a_fixed_point_is_dragged(tmp_path):
     """Its given numbers follow the finger, to a millimetre; the sliders show them; it can be undone."""
     path = tmp_path / "page.html"
     path.write_text(made("lugansk/shaper"), encoding="utf-8")
-    with browser(tmp_path / "profile") as opened:
+    with browser() as opened:
         opened.open(path.as_uri())
         opened.until("window.tmm?.ready")
         opened.now("tmm.open('turn')")
@@ -584,7 +584,7 @@ def test_a_fixed_point_is_dragged(tmp_path):
 def test_sliders_are_called_by_their_letters(tmp_path):
     path = tmp_path / "page.html"
     path.write_text(made("lugansk/shaper"), encoding="utf-8")
-    with browser(tmp_path / "profile") as opened:
+    with browser() as opened:
         opened.open(path.as_uri())
         opened.until("window.tmm?.ready")
         opened.now("tmm.open('turn')")
@@ -598,7 +598,7 @@ def test_the_hodograph_of_the_crank_pin_is_a_circle(tmp_path):
     """About the pole, with the velocity of the pin as its radius, in the scale of its card; every vector from a pole has one."""
     path = tmp_path / "page.html"
     path.write_text(made("lugansk/shaper"), encoding="utf-8")
-    with browser(tmp_path / "profile") as opened:
+    with browser() as opened:
         opened.open(path.as_uri())
         opened.until("window.tmm?.ready")
         opened.now("tmm.open('turn')")
@@ -643,7 +643,7 @@ def test_a_number_that_is_moved_in_a_hurry(name, tmp_path):
     """The mechanism and its velocities are exact while the hand moves, everything when it rests."""
     path = tmp_path / "page.html"
     path.write_text(made(name), encoding="utf-8")
-    with browser(tmp_path / "profile") as opened:
+    with browser() as opened:
         opened.open(path.as_uri())
         opened.until("window.tmm?.ready")
         *far, many = opened.now(HURRIED)

@@ -68,7 +68,7 @@ def test_a_walk(name, tmp_path):
     """No error, nothing undefined, nothing asked of a network; sliders end where the mechanism does."""
     path = tmp_path / "page.html"
     path.write_text(page(Project(catalogue.read(name)))[0], encoding="utf-8")
-    with browser(tmp_path / "profile") as walked:
+    with browser() as walked:
         walked.open(path.as_uri())
         walked.until("!!window.tmm?.ready")
         assert walked.now(SHEETS) == []

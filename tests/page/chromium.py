@@ -1,11 +1,14 @@
 """A chromium without a window that is driven over a pipe: pages opened, expressions evaluated, until something is true."""
 
+import atexit
 import fcntl
 import json
 import os
 import subprocess
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import monotonic, sleep
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
@@ -13,31 +16,36 @@ from urllib.request import url2pathname
 from tests.living.javascript import CHROMIUM
 
 
-class Page:
-    """The one page that it has open."""
+class Browser:
+    """The process, which takes a second to begin: one for all tests of a worker."""
 
-    def __init__(self, there, back):
-        self.there, self.back, self.number, self.session, self.inside, self.said, self.data = there, back, 0, None, None, [], b""
-        (target,) = [t for t in self("Target.getTargets")["targetInfos"] if t["type"] == "page"]
-        self.session = self("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
-        for domain in ("Page", "Runtime", "Log"):
-            self(f"{domain}.enable")
-        self("Target.setAutoAttach", autoAttach=True, waitForDebuggerOnStart=False, flatten=True)
+    def __init__(self):
+        read, self.there = os.pipe()
+        self.back, write = os.pipe()
+        self.folder, self.number, self.data = TemporaryDirectory(), 0, b""
 
-    def __call__(self, method, inside=False, **parameters):
-        """What a command of the protocol gives, of the frame inside the page if asked; what the page said meanwhile is kept."""
+        def pipes():
+            ends = [fcntl.fcntl(end, fcntl.F_DUPFD, 10) for end in (read, write)]  # which may be 3 and 4 themselves
+            for place, end in enumerate(ends, 3):
+                os.dup2(end, place)
+
+        command = [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe",
+                   f"--user-data-dir={self.folder.name}", "about:blank"]
+        self.process = subprocess.Popen(command, stderr=subprocess.DEVNULL, preexec_fn=pipes, close_fds=False)
+        os.close(read)
+        os.close(write)
+        atexit.register(self.end)
+
+    def __call__(self, method, session=None, heard=lambda event: None, **parameters):
+        """What a command of the protocol gives; events meanwhile are heard."""
         self.number += 1
-        session = self.inside if inside else self.session
         message = {"id": self.number, "method": method, "params": parameters} | ({"sessionId": session} if session else {})
         os.write(self.there, json.dumps(message).encode() + b"\0")
         while True:
             found = self._next()
             if found.get("id") == self.number:
                 return found["result"]
-            if found.get("method") == "Target.attachedToTarget" and found["params"]["targetInfo"]["type"] == "iframe":
-                self.inside = found["params"]["sessionId"]
-            if found.get("method") in ("Runtime.exceptionThrown", "Log.entryAdded"):
-                self.said.append(found["params"])
+            heard(found)
 
     def _next(self):
         while b"\0" not in self.data:
@@ -46,6 +54,35 @@ class Page:
             self.data += piece
         whole, _, self.data = self.data.partition(b"\0")
         return json.loads(whole)
+
+    def end(self):
+        self.process.kill()
+        self.process.wait()
+        self.folder.cleanup()
+
+
+class Page:
+    """An empty page that has nothing in common with those before it."""
+
+    def __init__(self, browser, context):
+        self.browser, self.inside, self.said = browser, None, []
+        target = browser("Target.createTarget", url="about:blank", browserContextId=context)["targetId"]
+        self.session = browser("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log"):
+            self(f"{domain}.enable")
+        self("Target.setAutoAttach", autoAttach=True, waitForDebuggerOnStart=False, flatten=True)
+
+    def __call__(self, method, inside=False, **parameters):
+        """What a command of the protocol gives, of the frame inside the page if asked; what the page said meanwhile is kept."""
+        return self.browser(method, self.inside if inside else self.session, self._heard, **parameters)
+
+    def _heard(self, event):
+        if event.get("sessionId") != self.session:
+            return  # of a page before
+        if event["method"] == "Target.attachedToTarget" and event["params"]["targetInfo"]["type"] == "iframe":
+            self.inside = event["params"]["sessionId"]
+        if event["method"] in ("Runtime.exceptionThrown", "Log.entryAdded"):
+            self.said.append(event["params"])
 
     def open(self, address):
         """Go to an address; the names of a page from a file are made global, so that tests can ask for them."""
@@ -69,25 +106,16 @@ class Page:
         return found
 
 
+running = cache(Browser)
+
+
 @contextmanager
-def browser(folder):
-    """A browser with an empty page; ``folder`` keeps what it keeps."""
-    read, there = os.pipe()
-    back, write = os.pipe()
-
-    def pipes():
-        ends = [fcntl.fcntl(end, fcntl.F_DUPFD, 10) for end in (read, write)]  # which may be 3 and 4 themselves
-        for place, end in enumerate(ends, 3):
-            os.dup2(end, place)
-
-    command = [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe", f"--user-data-dir={folder}",
-               "about:blank"]
-    with subprocess.Popen(command, stderr=subprocess.DEVNULL, preexec_fn=pipes, close_fds=False) as process:
-        os.close(read)
-        os.close(write)
-        try:
-            yield Page(there, back)
-        finally:
-            process.kill()
-            os.close(there)
-            os.close(back)
+def browser():
+    """A page; after one that fell with its browser there is another browser."""
+    if running().process.poll() is not None:
+        running.cache_clear()
+    context = running()("Target.createBrowserContext")["browserContextId"]
+    try:
+        yield Page(running(), context)
+    finally:
+        running()("Target.disposeBrowserContext", browserContextId=context)

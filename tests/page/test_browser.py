@@ -47,8 +47,8 @@ slider.value = 0.095; slider.dispatchEvent(new Event('input')); slider.dispatchE
 
 
 @javascript.browser
-def test_a_day_at_the_page(tmp_path):
-    with served() as address, browser(tmp_path / "profile") as page:
+def test_a_day_at_the_page():
+    with served() as address, browser() as page:
         page.open(address)
         page.until("!!document.querySelector('html[data-ready] .card')")
         assert page.now("document.querySelectorAll('.card').length") > 15
@@ -96,7 +96,7 @@ def test_a_day_at_the_page(tmp_path):
 def test_a_file_that_is_saved_elsewhere_is_shown(tmp_path):
     path, text = tmp_path / "mine.toml", catalogue.read("lugansk/cam_flat").text
     path.write_text(text, encoding="utf-8")
-    with served("--watch", str(path)) as address, browser(tmp_path / "profile") as page:
+    with served("--watch", str(path)) as address, browser() as page:
         page.open(address)
         page.until(DRAWN)
         path.write_text(text.replace("stroke = ", "<b>strok = "), encoding="utf-8")

@@ -23,11 +23,14 @@ PLAIN = [("lugansk/shaper", 3), ("press", 3)]
 SHEETS = [*PLAIN, ("lugansk/shaper", 4), ("lugansk/cam_flat", 1), ("lugansk/cam_rocker", 1), ("press", 4),
           ("transport/press@07-ЭПС-718", 2), ("transport/compressor@00-T-111", 2), ("transport/compressor@00-T-111", 3),
           ("transport/diesel@05-T-384", 3)]  # fmt: skip
-sheets = pytest.mark.parametrize(("name", "n"), few(SHEETS, *SHEETS[1::6]))
+sheets = pytest.mark.parametrize(("language", "name", "n"), few(
+    [(language, *sheet) for language in FOREIGN for sheet in SHEETS],
+    ("ru", *SHEETS[7]), ("uk", *SHEETS[7]), ("en", *SHEETS[1])), indirect=["language"])
+"""Of ``make test``: each language once, a sheet of gears alone and one with a cam or a reducer."""
 METHODS_SPEAK = not any(FOREIGN["en"].search(law.title) for law in LAWS.values())
 
 
-@pytest.fixture(params=["ru", "uk", "en"])
+@pytest.fixture
 def language(request):
     with words.on_paper(request.param):
         yield request.param
