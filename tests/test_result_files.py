@@ -52,7 +52,7 @@ def at(tree, path):
 
 
 def test_json_in_pieces_is_json(many):
-    """Byte for byte what json writes of the plain tree."""
+    """Row by row what json writes of the plain tree."""
     text = "".join(result_files.json_pieces(many))
     plain = result_files.plain_numbers(many)
     assert json.loads(text) == plain

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from decimal import ROUND_HALF_UP, Context, Decimal
+from functools import lru_cache
 from math import copysign, degrees, floor, isfinite, log10, radians
 from typing import Any
 
@@ -67,15 +68,16 @@ def rounded(x: float, digits: int = 4, kind: float = 0.0) -> str:
     """The same with the signs of a computer's number, for :func:`told`."""
     if is_zero(x, kind):
         return "0"
-    text = _half_up(x, max(digits - 1 - floor(log10(abs(x))), 0))
+    text = _half_up(float(x), max(digits - 1 - floor(log10(abs(x))), 0))
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
+@lru_cache(4096)  # a number is written in many sentences
 def _half_up(x: float, decimals: int) -> str:
     """Rounded as people round the number they read: a last 5 goes away from zero, where a computer goes to the even digit."""
     if not isfinite(x):
         return f"{x:.{decimals}f}"
-    return f"{Decimal(repr(float(x))).quantize(Decimal(1).scaleb(-decimals), ROUND_HALF_UP, _LONG):f}"
+    return f"{Decimal(repr(x)).quantize(Decimal(1).scaleb(-decimals), ROUND_HALF_UP, _LONG):f}"
 
 
 _LONG = Context(prec=400)
@@ -100,7 +102,7 @@ def enough(x: float, least: int, kind: float = 0.0) -> str:
 
 def decimal(x: float, decimals: int = 2, sign: bool = False) -> str:
     """A number with a decimal point and a fixed number of decimals; never "-0". With ``sign`` positive ones have a plus."""
-    text = _half_up(x, decimals)
+    text = _half_up(float(x), decimals)
     if isfinite(x) and float(text) == 0:
         return text.lstrip("-")
     return f"+{text}" if sign and x > 0 else text

@@ -40,9 +40,12 @@ def _lines(value: Any, level: int) -> Iterator[str]:
     if array is None:
         yield json.dumps(plain_numbers(value), ensure_ascii=False, allow_nan=False)
         return
+    from pydantic_core import to_json  # eight times as quick as json with numbers
+
     comma = "["
     for begin in range(0, len(array), PIECE):
-        yield comma + json.dumps(_finite(array[begin:begin + PIECE]), allow_nan=False)[1:-1]
+        part = to_json((array[begin:begin + PIECE] + 0.0).tolist(), inf_nan_mode="null")  # -0.0 becomes 0.0
+        yield comma + part[1:-1].replace(b",", b", ").decode()
         comma = ", "
     yield "]"
 
@@ -60,20 +63,10 @@ def row(value: Any) -> Any:
     return value.astype(float, copy=False)
 
 
-def _finite(part: Any) -> list[Any]:
-    """Numbers for JSON: null for what is none, 0.0 for -0.0."""
-    import numpy as np
-
-    part = part + 0.0
-    if np.isfinite(part).all():
-        return part.tolist()  # type: ignore[no-any-return]
-    whole = part.astype(object)
-    whole[~np.isfinite(part)] = None
-    return whole.tolist()  # type: ignore[no-any-return]
-
-
 def plain_numbers(value: Any) -> Any:
     """Lists, texts and numbers only: values of steps, a point as [x, y]; NaN and infinity become null."""
+    if isinstance(value, str):  # most are labels of positions
+        return value
     if hasattr(value, "step") or hasattr(value, "rule"):  # Told, or a whole step
         return plain_numbers(value.value)
     if isinstance(value, complex):

@@ -121,8 +121,8 @@ class CatalogueText(str):
         sign = decimal_sign(self.language)
         if sign == ".":
             return super().format(*args, **fields)
-        signed = {key: _signed(value, sign) for key, value in fields.items()}
-        return super().format(*(_signed(value, sign) for value in args), **signed)
+        signed = {key: _Signed(value, sign) if isinstance(value, _NUMBERS) else value for key, value in fields.items()}
+        return super().format(*[_Signed(value, sign) if isinstance(value, _NUMBERS) else value for value in args], **signed)
 
 
 class _Signed:
@@ -135,8 +135,7 @@ class _Signed:
         return format(self.number, spec).replace(".", self.sign)
 
 
-def _signed(value: object, sign: str) -> object:
-    return _Signed(value, sign) if isinstance(value, float | Decimal) else value
+_NUMBERS = (float, Decimal)
 
 
 def _text(text: str, language: str) -> CatalogueText:

@@ -6,7 +6,6 @@ Letters are strokes, not text: a viewer without the drawing font would show othe
 
 from __future__ import annotations
 
-import re
 from cmath import exp
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
@@ -164,7 +163,12 @@ def _number(value: float) -> str:
     return "0" if text == "-0" else text
 
 
+_ESCAPES = {
+    **dict.fromkeys((*range(9), 0xb, 0xc, *range(0xe, 0x20), *range(0xd800, 0xe000), 0xfffe, 0xffff), "\ufffd"),
+    **{ord(sign): f"&{name};" for sign, name in (("&", "amp"), ("<", "lt"), (">", "gt"), ('"', "quot"))},
+}
+
+
 def escaped(text: str) -> str:
     """Escape text for XML; control characters, which XML cannot hold, are replaced."""
-    text = re.sub("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", "\ufffd", text)
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace('"', "&quot;")
+    return text.translate(_ESCAPES)

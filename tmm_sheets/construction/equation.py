@@ -47,7 +47,7 @@ from tmm_sheets.construction.formula import (
 )
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.numbers import degrees_and_minutes, number, rounded, rounded_angle, written
-from tmm_sheets.words import decimal_sign, marked, tr
+from tmm_sheets.words import decimal_sign, marked, paper, tr
 
 DIGITS = 4
 """Significant digits of a number in the note, as a drawing gives them."""
@@ -67,6 +67,7 @@ class Digits:
     angle: int = 0
 
 
+@lru_cache(4096)
 def _split(value: float, digits: int) -> tuple[str, int]:
     """A number as a computer writes it, and the power of ten behind it."""
     exponent = floor(log10(abs(value)))
@@ -274,19 +275,24 @@ def equation(of: Expression | Callable[..., Any], quantities: Sequence[Quantity]
     numbers, of_result = in_numbers(tree, quantities, replace(result, digits=0) if angle else result)
     turned = angle and isinstance(tree, Operation) and tree.name in "*/"  # of a quotient that is an angle, π is half a turn
 
-    def line(operands: Sequence[Operand]) -> str:
-        text = lettered(of_tree(tree, operands))
+    def line(text: str) -> str:
         return text.replace("2π", "360°").replace("π", "180°") if turned else text
 
     said = tr(UNITS[result.unit]) if not unit and result.unit in UNITS and not angle else unit
     value = degrees_and_minutes(result.value, of_result) if angle else result.written(Digits(of_result))
     parts = [result.symbol] if result.symbol else []
     if in_letters:
-        form = line([Operand(letters(q.symbol), None, _is_sum(q.symbol)) for q in quantities])
+        form = line(_in_letters(tree, tuple(q.symbol for q in quantities), paper()))
         parts += [form] if form != result.symbol else []
     if not isinstance(tree, Argument):
-        parts.append(line(numbers))
+        parts.append(line(lettered(of_tree(tree, numbers))))
     return " = ".join([*parts, f"{_raised(value)} {said}".rstrip()])
+
+
+@lru_cache(1024)
+def _in_letters(tree: Expression, symbols: Sequence[str], language: str) -> str:
+    """A formula in letters, with the functions of the paper's ``language``: it is the same at each position."""
+    return lettered(of_tree(tree, [Operand(letters(symbol), None, _is_sum(symbol)) for symbol in symbols]))
 
 
 def _traced(function: Callable[..., Any], count: int) -> Expression:

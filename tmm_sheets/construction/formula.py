@@ -183,6 +183,7 @@ _SIGNS = "=+−-·/(),;:|≈<>≤≥°%×∥⟂→–…"
 _PRIMES = "'′″"
 
 
+@lru_cache(4096)  # asked again at each position
 def letters(markup: str) -> Node:
     """Tree of lettering markup."""
     if _WORD.fullmatch(markup):

@@ -262,7 +262,7 @@ NOTHING = 1e-9
 
 def _said(value: Any, kind: Kind, to_mm: Callable[[float], float], unit: str, of_sort: float) -> str:
     """A value with its unit; ``of_sort`` is the size of its sort, in the unit of the plan."""
-    if kind not in _MEASURED or np.ndim(value):
+    if kind not in _MEASURED or getattr(value, "ndim", False):
         return ""
     if not isfinite(value):
         return "—" if np.isnan(value) else "−∞" if np.real(value) < 0 else "∞"

@@ -325,7 +325,7 @@ def part_of(value: Any, part: Part) -> Any:
     return _PARTS[part](value) if part else value
 
 
-_HOLDERS, _SCALARS = (Step, Given), (float, complex, str)  # a union of types would be made at each of thousands of calls
+_HOLDERS = (Step, Given)  # a union of types would be made at each of thousands of calls
 
 
 def value_of(x: Any) -> Any:
@@ -335,8 +335,8 @@ def value_of(x: Any) -> Any:
 
 def value_at(x: Any, k: int) -> Any:
     """Value of a step or of a given array at position ``k``; numbers are the same at every position."""
-    value = value_of(x)
-    return value if isinstance(value, _SCALARS) or np.ndim(value) == 0 else value[k]
+    value = x.value if isinstance(x, _HOLDERS) else x
+    return value[k] if isinstance(value, np.ndarray) and value.ndim else value
 
 
 # --- plans --------------------------------------------------------------------------------------------------------------

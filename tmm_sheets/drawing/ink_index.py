@@ -227,8 +227,8 @@ def _is_short(mark: Mark) -> bool:
 def sample(a: Any, b: Any, step: float) -> Points:
     """Points along segments from ``a`` to ``b``, complex (n,), with their ends, at most ``step`` mm apart."""
     count = (np.abs(b - a) / step).astype(int) + 2
-    share = (np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count - 1, count)
-    return np.asarray(np.repeat(a, count) + share * np.repeat(b - a, count))
+    share = (np.arange(count.sum()) - (count.cumsum() - count).repeat(count)) / (count - 1).repeat(count)
+    return np.asarray(a.repeat(count) + share * (b - a).repeat(count))
 
 
 def sides(a: Any, b: Any) -> Floats:

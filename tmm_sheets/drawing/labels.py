@@ -360,7 +360,7 @@ class Places:
     def __init__(self, placed: PlacedLabels, label: Label, candidates: _Candidates) -> None:
         self.label, self._placed = label, placed
         self.sides, cost, self._strayed, clear, around = candidates
-        free = np.flatnonzero(clear)
+        free = clear.nonzero()[0]
         near = placed.boxes[ink_index.find_near(placed.boxes.T, around, CLEAR)]
         if len(free) and len(near):
             free = free[~_overlap(self.sides[:, free] + _MARGIN, near)]
@@ -372,11 +372,11 @@ class Places:
         leaders = placed.leaders[ink_index.find_near(placed.leaders.T, around, CLEAR)]
         if len(leaders):
             more += COVERING * _overlap(there + _MARGIN, leaders)
-        self.cost = np.full(len(cost), np.inf)
+        self.cost = np.zeros(len(cost)) + np.inf
         self.cost[some] = more
         self.run_on = np.zeros(len(cost), bool)
         self.run_on[some] = read_on
-        self.free = free[np.argsort(self.cost[free], kind="stable")]
+        self.free = free[self.cost[free].argsort(kind="stable")]
         self.led = (np.abs(owners.nearest(label.anchor, self.sides) - label.anchor) > NEAR + label.gap) | bool(label.shelf)
 
     def choose(self, here: owners.Surroundings, leaders: bool = True, least: float = np.inf) -> tuple[int | None, float]:
@@ -387,8 +387,6 @@ class Places:
         ``least`` or more.
         """
         best, worst, enough = None, np.inf, np.inf
-        if here.unsure and not leaders:
-            return None, worst
         found = dict[int, float]()
         # What is wrong with the spot that is named is wrong with every place: one with nothing else is as good as any.
         spot = here.unsure * np.where(self.led, CROSSING * owners.LED if here.head is None else IN_HEAD, VAGUE * owners.SPOT) \
@@ -493,11 +491,13 @@ def _place(placed: PlacedLabels, label: Label, candidates: _Candidates, around: 
     if unread or places.run_on[k] or vague or leader_to(*found[:2]) is not None:
         along = [label._replace(anchor=anchor) for anchor in here.places_along()]
         for moved, tried in zip(along, candidate_places(placed, along, around), strict=True):
-            others = Places(placed, moved, tried)
             beside = surroundings(placed.ink, moved)
             of_vector = beside.vector is not None  # so near to its end a leader would name the point
-            there, fault = others.choose(beside, unread and of_vector, cost)
             sure = sure or (of_vector and not beside.unsure)
+            if beside.unsure and not (unread and of_vector):
+                continue
+            others = Places(placed, moved, tried)
+            there, fault = others.choose(beside, unread and of_vector, cost)
             # Lettering that keeps off thin lines had better have a leader than stand over some.
             if there is not None and not others.run_on[there] and (
                     others.cost[there] + fault < cost or not (fault or vague or label.thin > 1.0)):

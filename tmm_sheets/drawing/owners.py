@@ -410,7 +410,7 @@ def _to_box(a: Any, b: Any, box: Iterable[Any]) -> tuple[Floats, Any, Any]:
     on = np.concatenate((a + t * d, [a, b]))
     at = np.minimum(np.maximum(on.real, x0), x1) + 1j * np.minimum(np.maximum(on.imag, y0), y1)
     gaps = np.abs(on - at)
-    best = np.argmin(gaps, axis=0)
+    best = gaps.argmin(axis=0)
     k = np.arange(len(a))
     gap = gaps[best, k]
     gap[enters(a, d, x0, y0, x1, y1)] = 0.0

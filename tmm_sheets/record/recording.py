@@ -120,6 +120,7 @@ FORMULA_KINDS = ("number", "length", "ordinate", "angle", "inclination")
 """Kinds of steps with a formula; a point has its sentence only."""
 
 
+@lru_cache(4096)
 def to_latex(markup: str) -> str:
     """Lettering markup, or the name of a step, as LaTeX."""
     if "_" not in markup and (numbered := _NUMBERED.fullmatch(markup)):
@@ -142,10 +143,13 @@ def formula_of(step: Step) -> expression.Expression | None:
     return with_bare_numbers(tree, step)
 
 
+_NUMBERS = (int, float, complex, np.number)
+
+
 def _formula_in_numbers(step: Step, tree: expression.Expression, k: int) -> str:
     """The formula with the numbers of position ``k``, LaTeX; empty if one of them is undefined."""
     values = [value_at(a, k) for a in (*step.args, step)]
-    if any(np.ndim(v) or isinstance(v, str) or not isinstance(v, int | float | complex | np.number) for v in values):
+    if not all(isinstance(v, _NUMBERS) for v in values):
         return ""
     *texts, value = map(_number_latex, values)
     signs = "".join("-" if text[0] == "-" else "0" if text[0] in "0123456789\\" else "a" for text in texts)
@@ -506,7 +510,7 @@ def mark_geometry(mark: Mark) -> dict[str, Any]:
 
 
 def _point(z: complex) -> list[float]:
-    return [round(float(z.real), MM_DECIMALS), round(float(z.imag), MM_DECIMALS)]
+    return [round(z.real, MM_DECIMALS), round(z.imag, MM_DECIMALS)]
 
 
 def _points(points: Points) -> list[list[float]]:

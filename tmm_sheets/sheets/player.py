@@ -252,7 +252,7 @@ class PlayerStage:
     def value(self, step: Step | str) -> Any:
         """Value of a step at the stage's position."""
         found = self.step(step)
-        return found.value if self.k is None else found.at(self.k)
+        return found.value if self.k is None else value_at(found, self.k)
 
     def at(self, step: Step | str) -> complex:
         """Point of the sheet of a step."""

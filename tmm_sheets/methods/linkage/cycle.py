@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import groupby
 from typing import Any
 
@@ -107,7 +108,7 @@ class Cycle:
         """World angles of the crank, rad counter-clockwise, shape (n,); a whole multiple of the turn away from (-pi, pi]."""
         return np.asarray(self.world(self.turned), dtype=np.float64)
 
-    @property
+    @cached_property
     def drawn(self) -> tuple[tuple[int, str], ...]:
         """Positions of the first turn, each with its labels: a later turn repeats the plans of the first ("1, 9")."""
         found = []
