@@ -164,8 +164,8 @@ def test_strange_ink_where_a_view_was_left_out():
     ink, _ = drawn()
     placed = placing.place(known(), (), Flat(), ink)
     middle = next(v for v in placed.similarities if v.name == "Планы положений механизма").box.centre
-    assert placed.strange(ExtraInk(middle, 20.0, 20.0, 28.0))
-    assert not placed.strange(ExtraInk(ABOUT[WHEEL], 20.0, 20.0, 28.0))
+    assert placed.strange(ExtraInk(middle, 20.0, 20.0, 28.0, np.array([middle])))
+    assert not placed.strange(ExtraInk(ABOUT[WHEEL], 20.0, 20.0, 28.0, np.array([ABOUT[WHEEL]])))
 
 
 def test_scale_factor_of_a_view_without_one(tmp_path):

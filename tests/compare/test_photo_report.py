@@ -91,6 +91,6 @@ def test_places_where_the_paper_bulges_are_told_in_millimetres():
 def test_the_legend_of_an_attempt_says_nothing_of_the_drawing(monkeypatch):
     said = []
     monkeypatch.setattr(overlay, "legend", lambda entries: said.append([words for _, words in entries]) or [[] for _ in entries])
-    overlay.legend_of()
-    overlay.legend_of(fitted=False)
+    overlay.strokes([], [])
+    overlay.strokes([], [], fitted=False)
     assert said == [["drawn", "exact", "wrong", "worth a look"], ["drawn", "exact", "does not fit"]]

@@ -21,7 +21,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
-from math import erf, sqrt
 from typing import Any, NamedTuple
 
 import cv2
@@ -30,7 +29,7 @@ import numpy as np
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.lost_ink import Mask, at
 from tmm_sheets.compare.photo.own_place import ALONG_STEP
-from tmm_sheets.compare.photo.profiles import NO_GREY, pixels, sample
+from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
 from tmm_sheets.compare.photo.traces import ELSEWHERE, END_STEP, STEP, Head, InkTrace, Owners
 from tmm_sheets.drawing.styles import line_type
@@ -63,8 +62,6 @@ NEXT = 15.0
 """mm of a line behind its head by which its own ink is known: a hand presses here more than there, and wavers."""
 SOME = 6
 """Least number of places along a line by which its ink is known."""
-SHARP = 0.2
-"""mm of blur (standard deviation) that the sharpest picture has, straightened to pixels of a sixth of a millimetre."""
 FAINT = 0.12
 """Darkness as a share of the line's own up to which there is no ink."""
 SEEN, WHOLE = 0.3, 0.8
@@ -82,24 +79,19 @@ WRITTEN = 0.85
 BARE, LITTLE, HARDLY_LIKE, OPEN, EACH = 0.2, 0.2, 0.6, 0.45, 0.1
 """Share up to which there is no head in its place, share and likeness from which on there may be one a little off or smaller, and
 least part of it that must be seen in its place for it to be missed, of all of it and of each of its sides."""
-UNLIKE = 0.5
-"""Likeness up to which ink in the place of a head that is on one side of the line only is another's that runs past it."""
-NOTHING, SCARCELY = 0.1, 0.3
-"""Share up to which nothing of a head is on a side of its place, and in all of its place where a whole one is at the other end."""
+NOTHING = 0.1
+"""Share up to which nothing of a head is on a side of its place."""
 ON_LINE = 0.998
 """Cosine of the angle up to which another arrow lies on the same line."""
 TOGETHER = 1.5
 """mm between tips up to which two heads on one line cannot be told from each other."""
-BESIDE_LINE = 0.4
-"""Share of a side of a head from which on it is one beside the line, as a line that is not quite where it was found has it."""
 ENOUGH, NEAREST = 3, 9
 """Least number of vectors with heads that tell how much ink is usual across a line, and of how many about it the middle one is
 taken: where the picture is small, all lines are paler."""
-CENTRED, BROADER = 0.45, 1.35
-"""mm from the middle of a line within which the middle of its stroke is; how much more ink than is usual there may be across it:
-broader strokes are those of several vectors, and hide their heads."""
-LINED, MOSTLY = 0.9, 0.6
-"""Least share of the way to the tip on which the line must be seen for its head to be missed, and where it is at the other end."""
+CENTRED = 0.45
+"""mm from the middle of a line within which the middle of its stroke is."""
+LINED = 0.9
+"""Least share of the way to the tip on which the line must be seen for its head to be missed."""
 
 
 class _Likeness(NamedTuple):
@@ -122,9 +114,7 @@ class _End:
     own : darkness across the line elsewhere
     grown : mm by which the line is wider than it was drawn
     lined : share of the way to the tip on which the line is seen
-    lies_on : whether it lies on a thicker line
     aside : mm from where the line was found to the middle of its stroke
-    soft : whether a head is held against it as blurred as the line itself is, see :meth:`softened`
     """
 
     element: Element
@@ -135,14 +125,7 @@ class _End:
     own: Floats
     grown: float
     lined: float
-    lies_on: bool
     aside: float
-    soft: bool = False
-
-    @property
-    def across(self) -> float:
-        """How much ink the line has across it."""
-        return float((self.own - self.own.min()).sum())
 
     def likeness(self, shifts: Floats, sizes: Sequence[tuple[float, float]]) -> Iterator[_Likeness]:
         """The likeness to heads of some sizes that lie some mm farther back."""
@@ -153,30 +136,12 @@ class _End:
 
     def _head(self, long: float, wide: float) -> Any:
         """How much darker it would be by a head of a length and a width, as shares of those it has by the drawing."""
-        if self.soft:
-            return self._soft_head(long, wide)
         e, length = self.element, long * _length(self.element)
         half = wide * _half_width(e) * self.back / length + self.grown / 2
         inside = (np.abs(ASIDE - self.aside) <= half[:, None]) & ((self.back >= 0) & (self.back <= length))[:, None]
         # As blurred as a line is.
         full = cv2.GaussianBlur(inside.astype(np.float32), (7, 5), sigmaX=0.2 / STEP, sigmaY=0.2 / END_STEP)
         return np.clip(self.own[MIDDLE].max() * full - self.own, 0, None)
-
-    def _soft_head(self, long: float, wide: float) -> Any:
-        """The same in a picture of few pixels, where a line is broader and paler than its pencil by as much as all is blurred."""
-        e, aside = self.element, ASIDE - self.aside
-        pen, length = line_type(e.style).width, long * _length(e)
-        own = self.own - self.own.min()
-        # Variances add up: that of a stroke with sharp edges, pen ** 2 / 12, and that of the blur.
-        blur = sqrt(max(float((own * aside**2).sum() / own.sum()) - pen**2 / 12, SHARP**2))
-        dark = float(own.max()) / erf(pen / (2 * sqrt(2) * blur))  # of a place broader than the blur
-        behind = (self.back >= 0)[:, None]
-        line = (np.abs(aside) <= pen / 2) & behind
-        half = wide * _half_width(e) * self.back / length
-        head = (np.abs(aside) <= half[:, None]) & behind & (self.back <= length)[:, None]
-        with_head, without = (cv2.GaussianBlur(some.astype(np.float32), (0, 0), sigmaX=blur / STEP, sigmaY=blur / END_STEP)
-                              for some in (line | head, line))  # fmt: skip
-        return dark * np.clip(with_head - without, 0, None)
 
     def _like(self, wanted: Any, length: float, shift: float) -> _Likeness:
         by = round(shift / END_STEP)
@@ -204,21 +169,10 @@ class _End:
         """It, if there are no letters."""
         return replace(self, known=self.legible)
 
-    def softened(self) -> _End:
-        """It, with heads as blurred as the line is: of less than four pixels a millimetre a sharper one is less like any head."""
-        return replace(self, soft=True)
-
     def has_whole_head(self) -> bool:
         """Whether all of the place of a head is seen, and one is there where none is expected."""
         seen = next(self.likeness(NEAR, SIZES)).part >= WHOLE
-        return seen and (self.has_head(SURELY, VERY_LIKE, WHOLE) or self.softened().has_head(SURELY, VERY_LIKE, WHOLE))
-
-    def better_seen(self) -> _End:
-        """Only the side of it that is seen where others hide nearly all of the other: what is left of that is mostly their edge."""
-        left, right = (s.part for s in self.sides())
-        if min(left, right) > SCANT or max(left, right) < SEEN:
-            return self
-        return self._only(-1 if left > right else 1)
+        return seen and self.has_head(SURELY, VERY_LIKE, WHOLE)
 
     def sides(self) -> list[_Likeness]:
         """The likeness of either side to that of a head in its place."""
@@ -233,19 +187,8 @@ class _End:
         here = next(self.likeness(NEAR, SIZES))
         return here.part > SCANT and here.share <= BARE
 
-    def empty(self, share: float = BARE) -> bool:
-        """Whether all of the place of a head is seen, and nothing like one is there: a head a little off would reach into it."""
-        here = next(self.likeness(NEAR, SIZES))
-        return here.part >= WHOLE and here.share <= share and here.alike <= UNLIKE
-
     def headless(self) -> bool:
-        """Whether the line goes on to its tip and has no head in its place, nor a little off it, nor a small one.
-
-        Letters may add ink to paper, and take none away.
-        """
-        return self._headless() or self.written()._headless()
-
-    def _headless(self) -> bool:
+        """Whether the line goes on to its tip and has no head in its place, nor a little off it, nor a small one."""
         if self.lined < LINED or not self.bare():
             return False
         sides = self.sides()
@@ -253,11 +196,8 @@ class _End:
         half = any(s.part >= SIDE and s.share <= NOTHING for s in sides)
         if not half and (sum(s.part for s in sides) < OPEN or min(s.part for s in sides) < EACH):
             return False
-        if any(s.part >= EACH and s.share >= BESIDE_LINE and s.alike >= HARDLY_LIKE for s in sides):
-            return False
         looked = chain(self.likeness(NEAR, SIZES), self.likeness(FARTHER, SIZES[:1]))
-        seen = WHOLE if self.empty() else SEEN
-        return not any(h.part >= seen and h.share >= LITTLE and h.alike >= HARDLY_LIKE for h in looked)
+        return not any(h.part >= SEEN and h.share >= LITTLE and h.alike >= HARDLY_LIKE for h in looked)
 
 
 @dataclass(frozen=True)
@@ -279,8 +219,7 @@ class Paper:
         far = max(length - head - SHAFT, head + SHAFT + 0.5 * SHORTEST)
         shaft = np.linspace(head + SHAFT, min(far, head + SHAFT + NEXT), 60)
         ink, others, letters, hidden = self._beside(e, tip, way, shaft)
-        pen = line_type(e.style).width / 2
-        left, right = _run_under(others, pen)
+        left, right = _run_under(others, line_type(e.style).width / 2)
         # In steps of pixels a line that lies under all of it shows beside it here and there.
         covered = bool(others[:, MIDDLE].any(1).mean() > ALL_ALONG)
         about = BESIDE + covered * STEP
@@ -288,8 +227,6 @@ class Paper:
         under = close & ((others.mean(0) > ALONG) | covered)
         free = ~_widened(others & ~close)
         own = _usual(ink, free & ~hidden & ~letters)
-        if own is None:  # letters may stand along it, but not everywhere
-            own = _usual(ink, free & ~hidden)
         if own is None:
             return None
         back = np.arange(-AHEAD, head + BEHIND + FARTHER[-1] + END_STEP, END_STEP)
@@ -306,7 +243,7 @@ class Paper:
         legible = ~_widened(others & ~under) & ~hidden
         aside = (low + high) / 2 if abs(low + high) <= 2 * CENTRED else 0.0
         grown = max(0.0, STEP * float(inked.sum()) - left - right)
-        return _End(e, back, ink - own, legible & ~letters, legible, own, grown, lined, max(left, right) > pen, aside)
+        return _End(e, back, ink - own, legible & ~letters, legible, own, grown, lined, aside)
 
     def _beside(self, e: Element, tip: complex, way: complex, back: Floats) -> tuple[Any, Any, Any, Any]:
         """Ink across a line ``back`` mm from its tip, where others are, where letters may stand, and where it is hidden."""
@@ -382,31 +319,20 @@ def with_heads(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any,
     """
     paper = Paper(ink, owners, words, hidden, [(complex(f[0]), complex(f[1:].mean())) for t in traces for f in t.element.fills])
     found = {k: _head(t, paper) for k, t in enumerate(traces) if _wanted(t)}
-    usual = [end for head, end in found.values() if head == "there" and end is not None and not end.lies_on]
     thin = construction_only(traces, ink, hidden)
-    seen = [traces[k].element for k, (head, _) in found.items() if head == "there"]
+    seen = [traces[k].element for k, head in found.items() if head == "there"]
     out = list(traces)
-    for k, (head, end) in found.items():
+    for k, head in found.items():
         t = traces[k]
         shares = any(_together(t.element, e, -1) for e in seen if e is not t.element)
-        broad = end is not None and not end.lies_on and end.across > BROADER * _across_about(t.element, usual) > 0
         if t.element.number in thin and (head != "there" or shares):
             # What lies elsewhere is a thin line of its own.
             out[k] = replace(t, head="left out") if t.deviation <= ELSEWHERE else InkTrace(t.element, "missing")
         else:
-            elsewhere = head == "absent" and (broad or shares)
-            out[k] = replace(t, head="unknown" if elsewhere else head)
+            out[k] = replace(t, head="unknown" if head == "absent" and shares else head)
     told = [t.element for t in out if t.head == "reversed"]
     doubted = {t.element.number for t in out if t.head == "doubled" and any(_together(t.element, e, 0) for e in told)}
     return [replace(t, head="unknown") if t.element.number in doubted else t for t in out]
-
-
-def _across_about(e: Element, ends: Sequence[_End]) -> float:
-    """How much ink vectors with heads about a line have across them; 0 where too few are known."""
-    if len(ends) < ENOUGH:
-        return 0.0
-    about = sorted(ends, key=lambda end: abs(end.element.middle - e.middle))
-    return float(np.median([end.across for end in about[:NEAREST]]))
 
 
 def _together(e: Element, other: Element, end: int) -> bool:
@@ -433,39 +359,37 @@ def _half_width(e: Element) -> float:
     return float(np.abs(((e.fills[0] - e.fills[0][0]) / way).imag).max() * abs(way))
 
 
-def _head(t: InkTrace, paper: Paper) -> tuple[Head, _End | None]:
-    """What there is of a head at the tip, and at the other end when there is none; and what there is about the tip."""
+def _head(t: InkTrace, paper: Paper) -> Head:
+    """What there is of a head at the tip, and at the other end when there is none."""
     assert t.at is not None
     way = (t.at[1] - t.at[0]) / abs(t.at[1] - t.at[0])
     beyond = [0.0 if np.isnan(by) else by for by in t.ends]
     begin, tip = complex(t.at[0] - way * beyond[0]), complex(t.at[1] + way * beyond[1])
     here = paper.end(t.element, tip, begin)
     if here is None:
-        return "unknown", None
+        return "unknown"
     alone = not paper.shares_tip(t.element, way)
-    has = here.has_head() and not here.empty()
+    has = here.has_head()
     if has and alone and not here.bare():
-        return "there", here
+        return "there"
     there = paper.end(t.element, begin, tip)
-    if there is None or here.lined < MOSTLY or paper.another_points(t.element, begin, way):
-        return ("there" if has else "absent" if here.headless() else "unknown"), here
+    if there is None or paper.another_points(t.element, begin, way):
+        return "there" if has else "absent" if here.headless() else "unknown"
     part = next(here.likeness(NEAR, SIZES)).part
-    bare = here.bare() and (alone or part >= HALF)
-    seen = next(there.likeness(NEAR, SIZES)).part
-    whole = there.has_whole_head()
-    if whole and (bare or (alone and here.empty(SCARCELY))):
-        return "reversed", here
+    bare = here.bare()
+    if bare and there.has_whole_head():
+        return "reversed"
     if has and alone:
-        return "there", here
+        return "there"
     # The less is seen of the tip, the more must be seen of the other end.
-    if bare and there.better_seen().has_head(SURELY, VERY_LIKE, SEEN if part >= SEEN else HALF):
-        return "reversed", here
+    if bare and there.has_head(SURELY, VERY_LIKE, SEEN if part >= SEEN else HALF):
+        return "reversed"
     # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
     if here.lined >= LINED and not paper.others_begin(t.element, begin, way) and there.has_head(SURELY, ALONE, WHOLE):
-        return "reversed", here
-    if whole or (not alone and seen >= SIDE and there.better_seen().has_head(SURELY, VERY_LIKE, SIDE)):
-        return "doubled", here
-    return ("there" if has else "absent" if here.headless() else "unknown"), here
+        return "reversed"
+    if not alone and next(there.likeness(NEAR, SIZES)).part >= SIDE and there.has_head(SURELY, VERY_LIKE, SIDE):
+        return "doubled"
+    return "there" if has else "absent" if here.headless() else "unknown"
 
 
 THICK = 0.35
@@ -476,19 +400,17 @@ OWN = np.abs(THIN_ASIDE) <= 0.75
 """Those within which its ink is."""
 SPARED, THIN_LEAST, PIECE = 1.5, 2.4, 5
 """mm at its ends that dots hide, least mm of it that must be seen by itself, and places that are taken together."""
-NARROW, PALE = 0.62, 0.7
-"""Ink across it, and its darkness, as shares of those usual for the vectors about it, up to which it is a thin line; in a black and
-white picture all that is left of a line is black, and its width alone counts."""
+NARROW = 0.62
+"""Ink across it, as a share of that usual for the vectors about it, up to which it is a thin line."""
 UNIFORM, THIN_MOSTLY = 0.75, 0.85
 """Ink across it up to which a piece of it is no vector's, and least share of it where that is so."""
 
 
 class _Stroke(NamedTuple):
-    """Ink of a vector where no other thick line is near: across it in pieces of it, and its darkness."""
+    """Ink of a vector where no other thick line is near, across it in pieces of it."""
 
     element: Element
     across: Any
-    dark: float
 
     @property
     def usual(self) -> float:
@@ -533,14 +455,13 @@ def _stroke(t: InkTrace, ink: Any, thick: Owners, hidden: Mask) -> _Stroke | Non
     profile = sample(ink, pixels(places[free])).astype(np.float64)[:, OWN]
     pieces = [np.median(part, 0) for part in np.array_split(profile, max(len(profile) // PIECE, 1))]
     across = np.array([(part - part.min()).sum() for part in pieces])
-    return _Stroke(t.element, across, float(np.median(profile.max(1))))
+    return _Stroke(t.element, across)
 
 
 def _thin(s: _Stroke, others: Sequence[_Stroke]) -> bool:
     if len(others) < ENOUGH:
         return False
     about = sorted(others, key=lambda o: abs(o.element.middle - s.element.middle))[:NEAREST]
-    usual, dark = float(np.median([o.usual for o in about])), float(np.median([o.dark for o in about]))
+    usual = float(np.median([o.usual for o in about]))
     uniform = (s.across <= UNIFORM * usual).mean() >= THIN_MOSTLY
-    pale = s.dark <= PALE * dark or dark >= NO_GREY
-    return bool(s.usual <= NARROW * usual and pale and uniform)
+    return bool(s.usual <= NARROW * usual and uniform)

@@ -26,7 +26,6 @@ from tmm_sheets.compare.photo.traces import (
     Stations,
     expected_ink,
     measured,
-    shrunk,
     smoothed,
 )
 from tmm_sheets.drawing.marks import Points
@@ -220,8 +219,6 @@ def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Flo
     # By how much it is off where it is seen: in a hub the way goes on under others.
     shown = (hit[row, column] & seen)[best]
     found = measured(e, s, base @ y, shown, float(share[best] / expected))
-    if shrunk(e, found):
-        return None
     return replace(found, darkness=float(np.median(strength[use])) if use.any() else 0.0)
 
 

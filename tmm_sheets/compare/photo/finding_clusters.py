@@ -75,21 +75,15 @@ class FindingCluster:
     @property
     def box(self) -> Box:
         """What its ink takes, mm."""
-        return Box.around(np.concatenate([_corners(x) for x in self.ink]))
+        return Box.around(np.concatenate([x.points for x in self.ink]))
 
     @property
     def at(self) -> complex:
         """Where it is circled, mm: on ink, for in the middle of several pieces there may be none."""
         if self.findings:
             return self.findings[0].at
-        ink = np.concatenate([x.points if len(x.points) else np.array([x.middle]) for x in self.ink])
+        ink = np.concatenate([x.points for x in self.ink])
         return complex(ink[np.abs(ink - ink.mean()).argmin()])
-
-
-def _corners(x: ExtraInk) -> Points:
-    """Points between which a piece of ink lies."""
-    half = complex(x.width, x.height) / 2
-    return x.points if len(x.points) else np.array([x.middle - half, x.middle + half])
 
 
 def places(findings: Sequence[PhotoFinding], extra: Sequence[ExtraInk]) -> list[FindingCluster]:
@@ -177,7 +171,7 @@ def _share(points: Points, line: Points, within: float) -> float:
 def _on(f: PhotoFinding, x: ExtraInk) -> bool:
     """Whether ink is that by which an element was found elsewhere."""
     at = f.trace.at
-    if at is None or not len(x.points) or f.element.kind == "text" or f.trace.deviation <= f.tolerance:
+    if at is None or f.element.kind == "text" or f.trace.deviation <= f.tolerance:
         return False
     return _share(x.points, sampled(at, SAMPLING)[0], ON) >= MOSTLY
 
@@ -185,7 +179,7 @@ def _on(f: PhotoFinding, x: ExtraInk) -> bool:
 def _near(f: PhotoFinding, x: ExtraInk) -> bool:
     """Whether ink runs along an element that is off, so that it may be its own."""
     e = f.element
-    if not len(x.points) or e.kind not in ("line", "arc", "circle", "curve") or (e.kind == "circle" and e.fills):
+    if e.kind not in ("line", "arc", "circle", "curve") or (e.kind == "circle" and e.fills):
         return False
     line, normal = sampled(e.points, SAMPLING)
     away = np.abs(x.points[:, None] - line)
@@ -218,7 +212,7 @@ def _likely(findings: Sequence[PhotoFinding], ink: Sequence[ExtraInk]) -> tuple[
     Near the end that stays others hide its ink. Its own place must be one where it cannot be told from others.
     """
     z = np.concatenate([x.points for x in ink])
-    if len(z) < 2 or np.std((z * np.conj(way := _way(z))).imag) > IN_LINE:
+    if np.std((z * np.conj(way := _way(z))).imag) > IN_LINE:
         return ()
     along = (z * np.conj(way)).real
     ends = z[[along.argmin(), along.argmax()]]
@@ -265,8 +259,6 @@ def _pieces(some: Sequence[ExtraInk]) -> list[list[ExtraInk]]:
 
 def _one_thing(x: ExtraInk, y: ExtraInk) -> bool:
     """Whether two pieces of ink lie side by side or are of one straight stroke."""
-    if not len(x.points) or not len(y.points):
-        return False
     gap = float(np.abs(x.points[:, None] - y.points).min())
     if gap <= NEXT or gap > GAP:
         return gap <= NEXT
@@ -280,7 +272,7 @@ def _circles(findings: Sequence[PhotoFinding], ink: Sequence[ExtraInk]) -> list[
     Circles that coincide are both in their place when one of them was drawn elsewhere, so only the ink tells of it.
     """
     out: list[tuple[PhotoFinding, list[ExtraInk]]] = []
-    rest = [x for x in ink if len(x.points)]
+    rest = list(ink)
     about = [f for f in findings if f.element.kind == "circle" and not f.element.fills and f.element.radius > LEAST_RADIUS]
     while found := max((c for f in about if (c := _about(f, rest)) is not None), key=lambda c: len(c[1]), default=None):
         out.append(found)

@@ -253,7 +253,7 @@ def frame_quads(ink: Any, lines: ProfileLines, level: float, long: tuple[Floats,
         return []
     least = APART * min(ink.shape)
     rows, columns = np.array(ink.shape) / 2
-    heights, places = [_y(line, columns) for line in across], [_x(line, rows) for line in down]
+    heights, places = _crossing(across, 0, columns), _crossing(down, 1, rows)
     levels = [(a, b) for a, b in combinations(range(len(across)), 2) if abs(heights[a] - heights[b]) > least]
     uprights = [(a, b) for a, b in combinations(range(len(down)), 2) if abs(places[a] - places[b]) > least]
     if not levels or not uprights:
@@ -364,29 +364,22 @@ def long_lines(ink: Any) -> tuple[Floats, Floats]:
     mask = cv2.resize((straight_lines(ink) > 9).astype(np.uint8), None, fx=0.5, fy=0.5, interpolation=cv2.INTER_NEAREST)
     middle = np.array(ink.shape)[::-1] / 2
     out: tuple[list[Floats], list[Floats]] = [], []
-    seen: tuple[list[tuple[float, float]], list[tuple[float, float]]] = [], []
+    seen: tuple[list[Floats], list[Floats]] = [], []
     found = cv2.HoughLines(mask, 1, np.pi / 720, round(0.08 * min(ink.shape)))
     for rho, theta in ([] if found is None else found[:, 0].tolist()):
         line = np.array([np.cos(theta), np.sin(theta), -2 * rho])
         k = 0 if abs(line[1]) > abs(line[0]) else 1
         if len(out[k]) >= MOST or abs(line[1 - k]) < 0.85:
             continue
-        ends = _ends(line, middle, k)
-        if all(max(abs(a - b) for a, b in zip(ends, other, strict=True)) > NEARBY for other in seen[k]):
+        ends = _crossing(line, k, middle[k] * np.array([0.5, 1.5]))
+        if all(np.abs(ends - other).max() > NEARBY for other in seen[k]):
             seen[k].append(ends)
             out[k].append(line)
     return np.array(out[0]).reshape(-1, 3), np.array(out[1]).reshape(-1, 3)
 
 
-def _ends(line: Floats, middle: Floats, k: int) -> tuple[float, float]:
-    """Where a line crosses a quarter and three quarters of the picture."""
-    where = _y if k == 0 else _x
-    return where(line, 0.5 * middle[k]), where(line, 1.5 * middle[k])
-
-
-def _y(line: Floats, x: float) -> float:
-    return float(-(line[0] * x + line[2]) / line[1])
-
-
-def _x(line: Floats, y: float) -> float:
-    return float(-(line[1] * y + line[2]) / line[0])
+def _crossing(lines: Floats, k: int, at: Any) -> Floats:
+    """How high lines (..., 3) that run across are ``at`` places along a row (k = 0), or how far along it those that run down are
+    at some height (k = 1).
+    """
+    return np.asarray(-(lines[..., k] * at + lines[..., 2]) / lines[..., 1 - k])

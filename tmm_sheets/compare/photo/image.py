@@ -471,7 +471,7 @@ def attempt(found: Rectified, known: Sequence[Element]) -> bytes:
     exact = [p for e in known if e.kind != "text" for p in dashed(e)]
     flags = [overlay.Flag(k, "red", complex(z))
              for k, z in enumerate(np.concatenate((found.check.astray, found.check.adrift, found.check.shifted)), 1)]
-    return overlay.png(found.ink, found.level, exact, flags, fitted=False)
+    return overlay.png(found.ink, found.level, overlay.strokes(exact, flags, fitted=False))
 
 
 def refusal(grey: Any, found: Rectified, known: Sequence[Element], path: Path, n: int) -> CannotBuild:

@@ -144,8 +144,6 @@ def _with_head(f: PhotoFinding) -> PhotoFinding:
 def _line(t: InkTrace, pencil: float, uncertainty: float, soft: bool) -> PhotoFinding:
     """Judge what was found of a line or of lettering, heads aside."""
     e, tolerance = t.element, tolerance_of(pencil, uncertainty, soft)
-    if t.status == "measured" and t.deviation > tolerance and not loose_ends(e) and all(by > LOOSE for by in t.ends):
-        t = InkTrace(e, "missing")  # what lies there and goes on at both ends is another line
     middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
     if t.status == "measured":
         ends = [*_ends(t, pencil, tolerance, soft)]

@@ -23,6 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
 from typing import Any, Literal
 
 import cv2
@@ -31,7 +32,7 @@ import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import SAMPLED, Element, sampled
-from tmm_sheets.compare.photo.profiles import ProfileLines, fit_freely, peaks, profiles
+from tmm_sheets.compare.photo.profiles import ProfileLines, fit_freely, peaks, profiles, runs
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Floats, Map
 from tmm_sheets.compare.photo.traces import NEARLY_ALL, InkTrace, expected_ink
 from tmm_sheets.drawing.marks import Points
@@ -114,8 +115,6 @@ def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: Profi
         single = ~there & (ground[row, column] >= GLARE)
         out[row[single], column[single]] = True
     out |= under_covers(ink, lines.points[there[: len(lines.points)]], level, shape)
-    if not out.any():
-        return out
     out = widened(out)
     for flap in flaps(out & ~outside):
         there_ = there[flap[row, column]]
@@ -161,27 +160,15 @@ def under_covers(ink: Any, seen: Points, level: float, shape: tuple[int, int]) -
         return out
     bare = max(level, PALE * float(np.median(inked[inked > level])))
     for strength, (begin, along, inwards, _) in zip(dark, ways, strict=True):
-        unseen = _long(strength < bare)
-        if not unseen.any():
-            continue
         where = seen - begin
         run, deep = (where * np.conj(along)).real, (where * np.conj(inwards)).real
         inside = (deep > OFFSETS[-1]) & (deep < DEEPEST)
-        for k in np.flatnonzero(unseen):
+        for k in chain.from_iterable(range(a, b) for a, b in runs(strength < bare) if b - a >= COVERED):
             near = deep[inside & (np.abs(run - k - 0.5) < ASIDE)]
             to = begin + along * (k + 0.5) + inwards * np.arange(-MARGIN_OUT, near.min(initial=DEEPEST))
             row, column = (PAPER.y1 - to.imag).astype(int), to.real.astype(int)
             valid = (row >= 0) & (row < shape[0]) & (column >= 0) & (column < shape[1])
             out[row[valid], column[valid]] = True
-    return out
-
-
-def _long(some: Any) -> Any:
-    """Those in runs of at least :data:`COVERED`."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], some.astype(np.int8), [0]))))
-    out = np.zeros(len(some), bool)
-    for a, b in zip(edges[::2], edges[1::2], strict=True):
-        out[a:b] = b - a >= COVERED
     return out
 
 

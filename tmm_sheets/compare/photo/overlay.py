@@ -17,7 +17,8 @@ from tmm_sheets.box import Box
 from tmm_sheets.compare.overlays import Numbered, around, legend, numbered
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.traces import fixed
-from tmm_sheets.drawing.marks import Points
+from tmm_sheets.drawing.ink import letters
+from tmm_sheets.drawing.marks import Points, Text
 from tmm_sheets.words import tell
 
 INK = (40, 70, 160)
@@ -27,7 +28,7 @@ BAD = {"red": (220, 0, 0), "amber": (190, 0, 190)}
 PNG_SCALE = 4.0  # pixels per mm
 CIRCLE = 7.0  # mm, radius around what is off
 DIGITS = 6.0  # mm, height of the box of a number; its digits are as high as two thirds of it
-HERSHEY = 21.0  # pixels, height of OpenCV's digits
+BOLD, FINE = 0.4, 0.12  # mm, widths of what is off and of the exact lines
 
 
 class Flag(NamedTuple):
@@ -39,35 +40,36 @@ class Flag(NamedTuple):
     lines: tuple[Points, ...] = ()
 
 
-def legend_of(fitted: bool = True) -> list[tuple[tuple[int, int, int], list[Points]]]:
-    """What everything means: colour and strokes; nothing is said of a drawing that was not ``fitted``."""
+class Stroke(NamedTuple):
+    """A line of the overlay: its points, colour and width, mm."""
+
+    points: Points
+    colour: tuple[int, int, int]
+    wide: float
+
+
+def strokes(exact: Sequence[Points], flags: Sequence[Flag], fitted: bool = True) -> list[Stroke]:
+    """All that lies over the ink: the exact lines, what is off, a legend; where it was not ``fitted``, what does not fit."""
     entries = [(INK, "line", tell("drawn")), (EXACT, "line", tell("exact"))]
     entries += [(BAD["red"], "red", tell("wrong")), (BAD["amber"], "amber", tell("worth a look"))] if fitted else [
         (BAD["red"], "red", tell("does not fit"))]
     said = legend([(form, words) for _, form, words in entries])
-    return [(colour, strokes) for (colour, _, _), strokes in zip(entries, said, strict=True)]
+    out = [Stroke(z, colour, BOLD) for (colour, _, _), some in zip(entries, said, strict=True) for z in some]
+    out += [Stroke(z, EXACT, FINE) for z in exact]
+    for f, number in zip(flags, number_places(flags), strict=True):
+        digits = letters(Text(number.at, number.text, DIGITS / 1.5))
+        out += [Stroke(z, BAD[f.verdict], BOLD) for z in (*f.lines, around(f.verdict, f.at, CIRCLE), *digits)]
+        out += [Stroke(np.array(number.leader), BAD[f.verdict], FINE)] if number.leader else []
+    return out
 
 
-def png(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag], fitted: bool = True) -> bytes:
-    """The overlay as PNG, :data:`PNG_SCALE` pixels per mm; where it was not ``fitted``, of the parts that do not fit."""
+def png(ink: Any, level: float, some: Sequence[Stroke]) -> bytes:
+    """The overlay as PNG, :data:`PNG_SCALE` pixels per mm."""
     size = (round(PAPER.width * PNG_SCALE), round(PAPER.height * PNG_SCALE))
     grey = cv2.resize(_clean(ink, level), size, interpolation=cv2.INTER_AREA)
     picture: Any = cv2.LUT(cv2.merge([grey, grey, grey]), _palette()[None, :, ::-1].copy())
-    for colour, strokes in legend_of(fitted):
-        for points in strokes:
-            cv2.polylines(picture, [fixed(points, PNG_SCALE)], False, colour[::-1], 2, cv2.LINE_AA, 4)
-    for points in exact:
-        cv2.polylines(picture, [fixed(points, PNG_SCALE)], False, EXACT[::-1], 1, cv2.LINE_AA, 4)
-    for f, number in zip(flags, number_places(flags), strict=True):
-        colour = BAD[f.verdict][::-1]
-        for line in f.lines:
-            cv2.polylines(picture, [fixed(line, PNG_SCALE)], False, colour, 2, cv2.LINE_AA, 4)
-        cv2.polylines(picture, [fixed(around(f.verdict, f.at, CIRCLE), PNG_SCALE)], True, colour, 2, cv2.LINE_AA, 4)
-        if number.leader is not None:
-            cv2.polylines(picture, [fixed(np.array(number.leader), PNG_SCALE)], False, colour, 1, cv2.LINE_AA, 4)
-        left, foot = (int(c) // 16 for c in fixed(np.array([number.at]), PNG_SCALE)[0])
-        high = DIGITS / 1.5 * PNG_SCALE / HERSHEY
-        cv2.putText(picture, number.text, (left, foot), cv2.FONT_HERSHEY_SIMPLEX, high, colour, 2, cv2.LINE_AA)
+    for points, colour, wide in some:
+        cv2.polylines(picture, [fixed(points, PNG_SCALE)], False, colour[::-1], max(round(wide * PNG_SCALE), 1), cv2.LINE_AA, 4)
     done, data = cv2.imencode(".png", picture)
     assert done
     return bytes(data.tobytes())
@@ -101,25 +103,13 @@ def _clean(ink: Any, level: float) -> Any:
     return cv2.threshold(ink, 0.6 * level, 255, cv2.THRESH_TOZERO)[1]
 
 
-def pdf(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag], title: str) -> bytes:
+def pdf(ink: Any, level: float, some: Sequence[Stroke], title: str) -> bytes:
     """The overlay as a PDF of the sheet's size."""
     mm = 72 / 25.4
     rows, columns = ink.shape
     palette = _palette().tobytes()
-    out = [f"{PAPER.width * mm:.4f} 0 0 {PAPER.height * mm:.4f} 0 0 cm /Ink Do Q q {mm:.6f} 0 0 {mm:.6f} 0 0 cm", "1 J 1 j 0.12 w",
-           _colour(EXACT)]  # fmt: skip
-    out += [_path(points) for points in exact]
-    for colour, strokes in legend_of():
-        out += [_colour(colour), "0.35 w", *map(_path, strokes)]
-    for f, number in zip(flags, number_places(flags), strict=True):
-        out += [_colour(BAD[f.verdict]), "0.35 w"]
-        out += [_path(line) for line in f.lines]
-        out.append(_path(around(f.verdict, f.at, CIRCLE)))
-        if number.leader is not None:
-            out += ["0.15 w", _path(np.array(number.leader))]
-        r, g, b = (c / 255 for c in BAD[f.verdict])
-        x, y = number.at.real, number.at.imag
-        out.append(f"BT {r:.3f} {g:.3f} {b:.3f} rg /F {DIGITS:g} Tf {x:.2f} {y:.2f} Td ({number.text}) Tj ET")
+    out = [f"{PAPER.width * mm:.4f} 0 0 {PAPER.height * mm:.4f} 0 0 cm /Ink Do Q q {mm:.6f} 0 0 {mm:.6f} 0 0 cm", "1 J 1 j"]
+    out += map(_path, some)
     content = zlib.compress(("q " + "\n".join(out) + " Q").encode("ascii"), 6)
     image = zlib.compress(_clean(ink, level).tobytes(), 1)
     name = "".join(f"{b:02X}" for b in b"\xfe\xff" + title.encode("utf-16-be"))
@@ -127,12 +117,11 @@ def pdf(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag], 
         b"<< /Type /Catalog /Pages 2 0 R /ViewerPreferences << /PrintScaling /None >> >>",
         b"<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
         (f"<< /Type /Page /Parent 2 0 R /MediaBox [0 0 {PAPER.width * mm:.4f} {PAPER.height * mm:.4f}] /Contents 4 0 R "
-         "/Resources << /XObject << /Ink 5 0 R >> /Font << /F 6 0 R >> >> >>").encode("ascii"),
+         "/Resources << /XObject << /Ink 5 0 R >> >> >>").encode("ascii"),
         b"<< /Length %d /Filter /FlateDecode >>\nstream\n" % len(content) + content + b"\nendstream",
         (f"<< /Type /XObject /Subtype /Image /Width {columns} /Height {rows} /BitsPerComponent 8 "
          f"/ColorSpace [/Indexed /DeviceRGB 255 <{palette.hex()}>] /Filter /FlateDecode "
          f"/Length {len(image)} >>\nstream\n").encode("ascii") + image + b"\nendstream",
-        b"<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica >>",
         f"<< /Title <{name}> /Creator (tmm-sheets) >>".encode("ascii"),
     ]  # fmt: skip
     data, places = b"%PDF-1.4\n", []
@@ -142,13 +131,10 @@ def pdf(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag], 
     start = len(data)
     data += b"xref\n0 %d\n0000000000 65535 f \n" % (len(objects) + 1)
     data += b"".join(b"%010d 00000 n \n" % p for p in places)
-    return data + b"trailer\n<< /Size %d /Root 1 0 R /Info 7 0 R >>\nstartxref\n%d\n%%%%EOF\n" % (len(objects) + 1, start)
+    return data + b"trailer\n<< /Size %d /Root 1 0 R /Info 6 0 R >>\nstartxref\n%d\n%%%%EOF\n" % (len(objects) + 1, start)
 
 
-def _colour(c: tuple[int, int, int]) -> str:
-    return " ".join(f"{x / 255:.3f}" for x in c) + " RG"
-
-
-def _path(points: Points) -> str:
-    places = [f"{p.real:.2f} {p.imag:.2f} {'l' if k else 'm'}" for k, p in enumerate(points.tolist())]
-    return " ".join(places) + " S"
+def _path(stroke: Stroke) -> str:
+    colour = " ".join(f"{x / 255:.3f}" for x in stroke.colour)
+    places = [f"{p.real:.2f} {p.imag:.2f} {'l' if k else 'm'}" for k, p in enumerate(stroke.points.tolist())]
+    return f"{colour} RG {stroke.wide:g} w " + " ".join(places) + " S"

@@ -30,7 +30,6 @@ from tmm_sheets.compare.photo.traces import (
     expected_ink,
     measured,
     open_line,
-    shrunk,
     smoothed,
     stations,
 )
@@ -134,8 +133,6 @@ def in_place(strip: Strip, level: float) -> InkTrace | None:
         x = fit(base, o, use, 0.3)
     t = replace(measured(e, s, base @ x, free, float(share / expected)), darkness=float(np.median(strength[use])),
                 free=float(free.mean()))
-    if shrunk(e, t):
-        return None
     if e.kind == "line" and t.deviation <= OFF and (others & own)[free].any(1).mean() >= ENOUGH:
         t = replace(t, parts=may_part(profile, others, e.length, t.darkness))
     if e.kind == "curve":
@@ -180,8 +177,6 @@ def _shared(strip: Strip, o: Floats, use: Any, level: float) -> InkTrace | None:
     base = s.base(able)
     x = fit(base, offsets, able, 0.3)
     good = able & (np.abs(offsets - base @ x) < 0.45)
-    if good.sum() < ENOUGH * able.sum():
-        return None
     t = measured(e, s, base @ x, able, float(good.sum() / able.sum()))
     return replace(t, status="shared")
 

@@ -18,7 +18,7 @@ import numpy as np
 from tmm_sheets.compare.elements import Element, grown, sampled
 from tmm_sheets.compare.photo.lost_ink import Mask, at
 from tmm_sheets.compare.photo.map_fit import LENS, Seen, camera_foot, camera_height, lens_and_homography
-from tmm_sheets.compare.photo.profiles import fit, follow, ink_levels, peaks, pixels, sample
+from tmm_sheets.compare.photo.profiles import fit, follow, ink_levels, peaks, pixels, runs, sample
 from tmm_sheets.compare.photo.sheet_map import AWAY, FRAME, PAPER, Floats, Map, drawn_in, spline_base, spline_nodes
 from tmm_sheets.compare.photo.traces import SAMPLING, Owners, Stations, fill, measurable, similarity_base
 from tmm_sheets.drawing.marks import Points
@@ -319,17 +319,11 @@ def _bent(e: Element, z: Points, n: Points, o: Floats, known: Any, seen: Any) ->
         return here
     for sign in (1, -1):
         far = (sign * off > BENT) | ~known
-        for a, b in _runs(far):
+        for a, b in runs(far):
             beside = slice(max(a - BEND, 0), b + BEND)
             if (seen & far)[a:b].sum() >= BEND and seen[beside].sum() >= INKED * known[beside].sum():
                 here[a:b] |= seen[a:b]
     return here
-
-
-def _runs(some: Any) -> Iterator[tuple[int, int]]:
-    """Beginnings and ends of runs."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], some.astype(np.int8), [0]))))
-    yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
 
 
 def _joined(pieces: Any, real: Any) -> Any:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextvars import copy_context
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -256,10 +255,10 @@ def _overlays(found: Rectified, judged: Judged, title: str) -> dict[str, bytes]:
     """The overlays by the suffix of their files."""
     flags = [overlay.Flag(p.number, str(p.verdict), p.at, shown(p)) for p in judged.places]
     exact = [p for f in judged.findings if f.element.kind != "text" for p in dashed(f.element)]
+    strokes = overlay.strokes(exact, flags)
     with ThreadPoolExecutor(1) as aside:  # half of the time goes into packing, which runs beside Python
-        # In the reader's language: a thread begins with none.
-        drawn = aside.submit(copy_context().run, overlay.png, found.ink, found.level, exact, flags)
-        page = overlay.pdf(found.ink, found.level, exact, flags, title)
+        drawn = aside.submit(overlay.png, found.ink, found.level, strokes)
+        page = overlay.pdf(found.ink, found.level, strokes, title)
         return {"png": drawn.result(), "pdf": page}
 
 

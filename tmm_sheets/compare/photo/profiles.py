@@ -6,6 +6,7 @@ Pictures are arrays with row 0 at the top; their points are complex numbers, pix
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import cv2
@@ -178,6 +179,12 @@ def follow(profile: Any, steps: int = 2, stiffness: float = 0.5) -> npt.NDArray[
     for i in range(n - 1, 0, -1):
         way[:, i - 1] = way[:, i] + steps - options[i, which, way[:, i]].argmax(1)
     return way
+
+
+def runs(some: Any) -> Iterator[tuple[int, int]]:
+    """Beginnings and ends of the runs of places that are true."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], some.astype(np.int8), [0]))))
+    return zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
 
 
 SETTLED = 1e-3  # mm of change below which a fit has converged

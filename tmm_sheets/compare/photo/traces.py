@@ -96,19 +96,18 @@ class InkTrace:
 
 
 class ExtraInk(NamedTuple):
-    """Ink where no element is known: middle, extent and diagonal of its bounding box, mm, and some points of it."""
+    """Ink where no element is known: middle, extent and diagonal of its bounding box, mm, and some points of it, one at least."""
 
     middle: complex
     width: float
     height: float
     length: float
-    points: Points = np.zeros(0, complex)
+    points: Points
 
 
 STEP = 0.1  # mm between offsets of a profile
 END_STEP = 0.2  # mm between places along a line at which its ends and its head are looked for
 LEAST = 6.0  # mm of line that can be measured
-SHRUNK = 0.5  # share of its radius by which a circle is never too small
 BLURRED = 7  # steps over which a line that crosses may be seen, beside its own width
 ENOUGH = 0.6  # least share of an element's ink on the line it is fitted by
 
@@ -194,11 +193,6 @@ def expected_ink(e: Element) -> float:
     """Share of an element's length that has ink."""
     pattern = line_type(e.style).pattern
     return sum(x for x in pattern if x > 0) / sum(map(abs, pattern)) if pattern and e.length > 8 else 1.0
-
-
-def shrunk(e: Element, t: InkTrace) -> bool:
-    """Whether a circle was found so much smaller than it belongs that it is no circle."""
-    return e.kind in ("circle", "arc") and t.growth < -SHRUNK * e.radius
 
 
 def measured(e: Element, s: Stations, o: Floats, use: Any, covered: float) -> InkTrace:
