@@ -52,8 +52,7 @@ from tmm_sheets.compare.photo import photograph
 from tmm_sheets.drawing import plotters
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.output import build_store, roster
-from tmm_sheets.page import doors as page_doors
-from tmm_sheets.page import jobs as page_jobs
+from tmm_sheets.page import doors as page_doors, jobs as page_jobs
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
 from tmm_sheets.task import messages, variant

@@ -23,8 +23,7 @@ from tmm_sheets.compare import codes
 from tmm_sheets.compare.diagnosis import hypotheses
 from tmm_sheets.drawing import marks, styles
 from tmm_sheets.drawing.marks import Arc, Drawing, Line
-from tmm_sheets.methods.linkage import numbering
-from tmm_sheets.methods.linkage import positions as positions_module
+from tmm_sheets.methods.linkage import numbering, positions as positions_module
 from tmm_sheets.project import Project
 from tmm_sheets.record import recording
 from tmm_sheets.sheets import player

@@ -25,10 +25,8 @@ from shapely import GeometryCollection, LineString, Point, Polygon, box
 from shapely.ops import nearest_points, substring
 
 from tests.gallery import names
-from tmm_sheets import catalogue
-from tmm_sheets import kept as stored
-from tmm_sheets.drawing import ink_index, lettering, owners
-from tmm_sheets.drawing import labels as placing
+from tmm_sheets import catalogue, kept as stored
+from tmm_sheets.drawing import ink_index, labels as placing, lettering, owners
 from tmm_sheets.drawing.canvas import Label
 from tmm_sheets.drawing.ink import strokes
 from tmm_sheets.drawing.marks import Box, Fill, Line, Text

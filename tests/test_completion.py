@@ -12,8 +12,7 @@ from tmm_sheets import catalogue, protocols
 from tmm_sheets.__main__ import run
 from tmm_sheets.cli import NAMES
 from tmm_sheets.cli.options import PARTS
-from tmm_sheets.project import PARTS as ALL_PARTS
-from tmm_sheets.project import Project
+from tmm_sheets.project import PARTS as ALL_PARTS, Project
 from tmm_sheets.record.step_index import leaves
 from tmm_sheets.results import told
 

@@ -9,9 +9,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import CannotBuild, together
-from tmm_sheets.task.variant import LINKAGE as LINKAGE
-from tmm_sheets.task.variant import PARTS as PARTS
-from tmm_sheets.task.variant import Variant
+from tmm_sheets.task.variant import LINKAGE as LINKAGE, PARTS as PARTS, Variant
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:

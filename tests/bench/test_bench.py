@@ -11,14 +11,11 @@ import numpy as np
 import pytest
 
 from tests.bench import costs, plain, whole
-from tests.methods.linkage import shaper_truth, statics
-from tests.methods.linkage import truth as other
+from tests.methods.linkage import shaper_truth, statics, truth as other
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.lab.bench import diagrams, linkages, profiles, truth
-from tmm_sheets.lab.bench import records as records_of
-from tmm_sheets.lab.bench.records import Bench, BenchRecord, as_json, fastest, table
-from tmm_sheets.lab.bench.records import diagrams as drawn_fields
+from tmm_sheets.lab.bench import diagrams, linkages, profiles, records as records_of, truth
+from tmm_sheets.lab.bench.records import Bench, BenchRecord, as_json, diagrams as drawn_fields, fastest, table
 
 
 def measured(*modules):

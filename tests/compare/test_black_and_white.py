@@ -8,8 +8,7 @@ from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.lost_ink import eats, lost_to_threshold, without_grey
 from tmm_sheets.compare.photo.traces import InkTrace
-from tmm_sheets.drawing.marks import Provenance as By
-from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.marks import Provenance as By, Text
 from tmm_sheets.drawing.text_layout import text_box
 
 pytestmark = pytest.mark.judging

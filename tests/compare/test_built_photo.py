@@ -216,8 +216,8 @@ def test_what_was_measured_in_its_place_is_not_elsewhere(by, here, there, told):
 @pytest.mark.parametrize(("against", "contradicted"), [(2, True), (1, True), (0, False)])
 def test_lines_in_their_places_speak_against_a_mistake(against, contradicted):
     red = judge(tracing.InkTrace(VECTOR, "missing"), 0.25, 0.15)
-    step = errors_of(SHAPER, KNOWN)[0]["accelerations"]["k"]
-    built = None, [PlanPoint(step, z, z + 3j * WAY) for z in VECTOR.points]
+    plan = errors_of(SHAPER, KNOWN)[0]["accelerations"]
+    built = None, [PlanPoint(plan[on.rpartition("/")[2]], z, z + 3j * WAY) for on, z in zip(VECTOR.on, VECTOR.points, strict=True)]
     stays = judge(tracing.InkTrace(VECTOR, "measured"), 0.25, 0.15)
     assert image.contradicted(built, [red] * 3 + [stays] * against) is contradicted
     assert not image.contradicted(built, [red] * 7 + [stays] * min(against, 1))

@@ -21,8 +21,7 @@ from tmm_sheets.compare import placing
 from tmm_sheets.compare.cad import cad_drawing, cad_file
 from tmm_sheets.compare.cad.cad_report import SHAPES
 from tmm_sheets.compare.cad.line_fit import lines
-from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.elements import views as views_of
+from tmm_sheets.compare.elements import elements, views as views_of
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project

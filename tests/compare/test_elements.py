@@ -128,15 +128,12 @@ def test_lettering_with_its_indices_bars_and_leader_is_one_text():
 def test_steps_name_lines_and_circles():
     canvas = canvas_of()
     plans, plan = canvas.placed("positions", "", 0j, 1.0), canvas.placed("velocities", "3", 0j, 1.0)
-    with canvas.traced("link", "positions/AB", "3", plans, "A–B"):
-        canvas.line(10 + 10j, 50 + 10j)
-    with canvas.traced("symbol", "positions/S3", "3", plans):
-        canvas.circle(90 + 40j, 1.6)
-    with canvas.traced("vector", "velocities/b", "3", plan, "p–b"):
-        canvas.arrow(10 + 80j, 90 + 80j)
-        canvas.label(50 + 80j, "V̅_B")  # lettering names nothing
-    with canvas.traced("construction", "lever/h F̅_{43}"):
-        canvas.line(10 + 85j, 90 + 85j)
+    canvas.tracing("link", "positions/AB", "3", plans, "A–B").line(10 + 10j, 50 + 10j)
+    canvas.tracing("symbol", "positions/S3", "3", plans).circle(90 + 40j, 1.6)
+    pen = canvas.tracing("vector", "velocities/b", "3", plan, "p–b")
+    pen.arrow(10 + 80j, 90 + 80j)
+    pen.label(50 + 80j, "V̅_B")  # lettering names nothing
+    canvas.tracing("construction", "lever/h F̅_{43}").line(10 + 85j, 90 + 85j)
     canvas.line(10 + 90j, 90 + 90j)
     assert [e.name for e in elements(sheet_of(canvas)) if e.kind != "text"] == ["A–B(3)", "S3(3)", "p–b", "h F43", ""]
 

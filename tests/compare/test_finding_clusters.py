@@ -16,8 +16,7 @@ from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.sheet_map import PAPER, Map
 from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace
 from tmm_sheets.compare.photo.tracing import trace
-from tmm_sheets.drawing.marks import Provenance as By
-from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.marks import Provenance as By, Text
 from tmm_sheets.drawing.text_layout import text_box
 
 PLAN, OTHER = (ElementView(n, name, Box(0, 0, 841, 594)) for n, name in enumerate(("plan", "other"), 1))

@@ -8,8 +8,7 @@ import pytest
 from tests.compare.simulation import paper
 from tmm_sheets import catalogue
 from tmm_sheets.compare.elements import elements, views
-from tmm_sheets.compare.photo import placed_views as placing
-from tmm_sheets.compare.photo import tracing
+from tmm_sheets.compare.photo import placed_views as placing, tracing
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.compare.placing import Placing, moved, read_places

@@ -11,8 +11,7 @@ import pytest
 
 from tests.compare.form import faults
 from tests.compare.manual_tables import opened
-from tests.compare.students import PENCIL, READING, Hand, Plant
-from tests.compare.students import opened as measurables_of
+from tests.compare.students import PENCIL, READING, Hand, Plant, opened as measurables_of
 from tests.few import seldom
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run

@@ -18,8 +18,7 @@ from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.small_marks import displaced_dots
 from tmm_sheets.compare.photo.traces import InkTrace, Owners, fill
 from tmm_sheets.compare.photo.tracing import trace
-from tmm_sheets.drawing.marks import Provenance as By
-from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.marks import Provenance as By, Text
 from tmm_sheets.drawing.styles import line_type
 
 pytestmark = pytest.mark.judging

@@ -6,8 +6,7 @@ from math import inf
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 
 from tmm_sheets.construction import arithmetic as ar
 

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from tests.construction.gradients import gradient
-from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction import expression, rules
+from tmm_sheets.construction import arithmetic as ar, expression, rules
 from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.equation import lettered
 from tmm_sheets.construction.error import Errors

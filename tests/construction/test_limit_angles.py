@@ -5,8 +5,7 @@ from decimal import Decimal, localcontext
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tmm_sheets.construction.limit_angles import PI, Cosine, angle_of, cos_sin, direction, split, two_sum
 

@@ -9,8 +9,7 @@ import pytest
 
 import tmm_sheets
 from tests.few import all_hold
-from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction import rules
+from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.expression import Operation, primitive
 from tmm_sheets.construction.function import NARROW, Function, Replay, fill
 from tmm_sheets.construction.program import GIVEN, NUMBER, REAL, Language, program, written

@@ -5,8 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tmm_sheets.construction.scale import HANDY, STANDARD, Scale, fit, fit_standard, handy
 from tmm_sheets.errors import CannotBuild

@@ -2,8 +2,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tmm_sheets.drawing.ink import cut, strokes
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Polyline, Text, flat

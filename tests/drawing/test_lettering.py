@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from fontTools.pens.boundsPen import BoundsPen
 from fontTools.ttLib import TTFont
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tmm_sheets.drawing.lettering import BAR, SIZES, advance, glyph, index_size, letter, plain, strokes
 from tmm_sheets.resources import template

@@ -81,8 +81,7 @@ def test_names_of_two_vectors_that_cross_stand_at_their_own():
     canvas, ends = Canvas(), ((0j, 60j), (12 + 0j, -8 + 60j))
     for (a, b), by in zip(ends, (A, B), strict=True):
         canvas.marks.append(Line(a, b, "vector", by=by))
-        with canvas.traced(*by):
-            canvas.label((a + b) / 2, "F_{21}", 1.0)
+        canvas.tracing(*by).label((a + b) / 2, "F_{21}", 1.0)
     assert place(canvas, Box(-100, -100, 100, 100)) == []
     a, b = np.array(ends).T
     for own, name in enumerate(m for m in canvas.marks if isinstance(m, Text) and m.text == "F"):
@@ -107,8 +106,7 @@ def test_a_leader_that_ends_where_two_vectors_run_together_might_name_either():
 def test_a_vector_has_its_name_anywhere_along_it_to_the_tip_of_its_own_head(length):
     canvas = Canvas()
     for name, tail in (("p–b", 0j), ("a–b", length + 40j)):
-        with canvas.traced("vector", "plan/b", "1", 0, name):
-            canvas.arrow(tail, length + 0j, "vector")
+        canvas.tracing("vector", "plan/b", "1", 0, name).arrow(tail, length + 0j, "vector")
     label = Label(length / 2 + 0j, "x", 3.5, by=Provenance("text", "plan/b", "1", 0))
     here = owners.Surroundings(ink_index.InkIndex(canvas.marks), label, 60.0)
     places = np.array([label.anchor, *here.places_along()])
@@ -178,8 +176,7 @@ def test_lettering_under_a_leader_is_seen_however_little(a, b, over):
 def test_the_letter_of_an_arm_moves_along_it_and_that_of_a_point_does_not(by, moves):
     """Lettering of a construction line's own role names the line; other lettering names the point it was asked for."""
     canvas = Canvas()
-    with canvas.traced("construction", "plan/h", "1", 0):
-        canvas.line(100 + 100j, 180 + 100j)
+    canvas.tracing("construction", "plan/h", "1", 0).line(100 + 100j, 180 + 100j)
     ink, label = ink_index.InkIndex(canvas.marks), Label(140 + 100j, "h", 2.5, by=Provenance(by, "plan/h", "1", 0))
     assert bool(owners.Surroundings(ink, label, 60.0).places_along()) is moves
 
@@ -229,13 +226,11 @@ def test_a_label_with_a_shelf_stands_on_it_and_is_led_from_the_edge_of_what_it_n
 
 def test_the_letter_moves_along_its_vector_before_it_gets_a_leader():
     canvas = Canvas()
-    with canvas.traced("vector", "plan/a", "1", 0):
-        canvas.line(100 + 100j, 180 + 100j, "vector")
+    canvas.tracing("vector", "plan/a", "1", 0).line(100 + 100j, 180 + 100j, "vector")
     for k in range(9):  # a comb of lines about its middle
         canvas.line(complex(132 + 2 * k, 80), complex(132 + 2 * k, 99.5))
         canvas.line(complex(132 + 2 * k, 100.5), complex(132 + 2 * k, 120))
-    with canvas.traced("text", "plan/a", "1", 0):
-        canvas.label(140 + 100j, "a", 1j)
+    canvas.tracing("text", "plan/a", "1", 0).label(140 + 100j, "a", 1j)
     first = len(canvas.marks)
     assert place(canvas, Box(0, 0, 300, 200)) == []
     (text,) = canvas.marks[first:]
@@ -289,8 +284,7 @@ def fan_of(lines):
     """Vectors with their heads, of the plan's steps 0, 1 .., on a canvas."""
     canvas = Canvas()
     for k, (a, b) in enumerate(lines):
-        with canvas.traced("vector", f"plan/{k}", "1", 0):
-            canvas.arrow(a, b, "vector")
+        canvas.tracing("vector", f"plan/{k}", "1", 0).arrow(a, b, "vector")
     return canvas
 
 
@@ -301,8 +295,7 @@ def test_a_leader_to_lines_that_are_nearly_one_ends_in_the_head_of_its_own(besid
     canvas = fan_of([(100 + 100j, 112 + 100j), (100 + 100j, complex(150, 100 + side * beside * 50 / 12))])
     for y in (98.5, 101.5):
         canvas.line(complex(96, y), complex(118, y), "thin")
-    with canvas.traced("text", "plan/0", "1", 0):
-        canvas.label(106 + 100j, "F", -1j * side)
+    canvas.tracing("text", "plan/0", "1", 0).label(106 + 100j, "F", -1j * side)
     ink = ink_index.InkIndex(canvas.marks, Box(0, 0, 300, 200))
     placed = labels.PlacedLabels(ink, canvas.labels)
     placed.place_all()
@@ -360,8 +353,7 @@ def test_a_name_stands_where_its_vector_is_alone_and_what_stood_there_makes_room
     for x in (103, 110)[:others]:
         canvas.label(complex(x, 100), "123", 1j, 3.5)
         canvas.label(complex(x, 100), "456", -1j, 3.5)
-    with canvas.traced("text", "plan/0", "1", 0):
-        canvas.label(130 + 100j, "F", 1j)
+    canvas.tracing("text", "plan/0", "1", 0).label(130 + 100j, "F", 1j)
     placed = labels.PlacedLabels(ink_index.InkIndex(canvas.marks, Box(0, 0, 300, 200)), canvas.labels)
     placed.place_all()
     for around in (labels.USUAL, labels.CLOSER):
@@ -385,8 +377,7 @@ def test_a_window_parts_no_label_from_what_it_names():
     """In a circle between the point and its letter: an enlarged detail's is looked through, any other is a line."""
     for draw, free in ((Canvas.window, True), (Canvas.circle, False)):
         canvas = Canvas()
-        with canvas.traced("vector", "plan/a", "1", 0):
-            draw(canvas, 100 + 100j, 1.5)
+        draw(canvas.tracing("vector", "plan/a", "1", 0), 100 + 100j, 1.5)
         marks = [m for n, m in enumerate(canvas.marks) if n not in canvas.windows]
         assert (not marks) is free
 

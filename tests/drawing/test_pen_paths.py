@@ -6,8 +6,7 @@ from math import gcd
 
 import numpy as np
 import shapely
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from tmm_sheets.drawing.pen_paths import drop_retraced, fill_passes, join_segments, line_passes, ordered, raised_travel
 

@@ -18,8 +18,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.foreign import desk as desks
-from tests.foreign import drawing, judge, mistakes, pencil, scene
+from tests.foreign import desk as desks, drawing, judge, mistakes, pencil, scene
 from tests.foreign.drawing import SIZE, Mark
 
 Image = NDArray[np.uint8]

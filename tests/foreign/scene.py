@@ -11,8 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.foreign import desk as desks
-from tests.foreign import drawing, mistakes, pencil
+from tests.foreign import desk as desks, drawing, mistakes, pencil
 from tests.foreign.camera import Camera, Picture, document, expose
 from tests.foreign.drawing import SIZE, Floats
 from tests.foreign.paper import Paper, dog_ear

@@ -7,8 +7,7 @@ from math import pi
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.step import Plan

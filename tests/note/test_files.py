@@ -13,8 +13,7 @@ from tests.note.opened import composed, opened
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.note import composing
-from tmm_sheets.note import note as writing
+from tmm_sheets.note import composing, note as writing
 from tmm_sheets.note.document import Contents, Heading, Sheet
 from tmm_sheets.project import Project
 from tmm_sheets.task import variant

@@ -5,15 +5,13 @@ from dataclasses import replace
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
+from hypothesis import example, given, settings, strategies as st
 
 from tests.few import seldom
 from tests.methods.linkage import truth as fifty_digits
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.__main__ import run
-from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction import rules
+from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.lab.stress import cases, change_points, invariants
 from tmm_sheets.lab.stress.cases import BOUNDS, SCENES, memory, run_case

@@ -4,8 +4,7 @@ import math
 from decimal import Decimal, localcontext
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tests.project_files import EVEN, SLIDER, read
 from tmm_sheets.errors import BadInput

@@ -37,8 +37,8 @@ from tmm_sheets.backends.dxf_frame import (
     letter_strokes,
     place,
     short,
+    weight as weight,
 )
-from tmm_sheets.backends.dxf_frame import weight as weight
 from tmm_sheets.drawing.ink import check, interrupted, strokes
 from tmm_sheets.drawing.lettering import BAR, PEN, advance, glyph, lacking, letter
 from tmm_sheets.drawing.marks import Dimension, Drawing, Form, FormField, Mark, Text

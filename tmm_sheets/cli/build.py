@@ -241,8 +241,7 @@ def run_watch(project: str, **asked: Any) -> None:
 @DASK
 @NO_CACHE
 def run_roster(table: Path, task: str, output: Path, **asked: Any) -> None:
-    from tmm_sheets.output import batch, build_store
-    from tmm_sheets.output import roster as rosters
+    from tmm_sheets.output import batch, build_store, roster as rosters
     from tmm_sheets.output.building import Order
 
     students = rosters.read(table, task)

@@ -121,6 +121,11 @@ class Element:
         return self.by.step if self.by is not None else ""
 
     @property
+    def on(self) -> tuple[str, ...]:
+        """The paths of the steps that it hangs on, see :class:`~tmm_sheets.drawing.marks.Provenance`."""
+        return self.by.on or (self.by.step,) if self.by is not None else ()
+
+    @property
     def position(self) -> str:
         """The label of the position it belongs to, empty where there is none."""
         return self.by.position if self.by is not None else ""

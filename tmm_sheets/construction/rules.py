@@ -12,8 +12,7 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.step import DISTANCE as DISTANCE
-from tmm_sheets.construction.step import Helper, Rule
+from tmm_sheets.construction.step import DISTANCE as DISTANCE, Helper, Rule
 from tmm_sheets.words import marked
 
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from cmath import phase, rect
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import wraps
 from math import ceil, cos, pi, sin
@@ -140,8 +139,7 @@ def in_role(role: Role) -> Callable[[Drawn], Drawn]:
     def made(draw: Drawn) -> Drawn:
         @wraps(draw)
         def drawn(canvas: Canvas, *args: Any, **options: Any) -> Any:
-            with canvas.as_role(role):
-                return draw(canvas, *args, **options)
+            return draw(canvas.as_role(role), *args, **options)
 
         return cast("Drawn", drawn)
 
@@ -172,7 +170,7 @@ class Canvas:
 
     Attributes
     ----------
-    of, by : view or construction step of the following marks, and their provenance (see :meth:`traced`)
+    of, by : view or construction step of the following marks, and their provenance (see :meth:`tracing`)
     frames : where plans were placed
     scales, chosen : scale factor of each drawn plan by its name, and the names that a project file may set
     parts, groups : which view the marks belong to, and which of them are one thing to a reader
@@ -212,24 +210,16 @@ class Canvas:
         """Number of the first mark of part ``k``, and of the one after its last."""
         return self.parts[k].first, self.parts[k + 1].first if k + 1 < len(self.parts) else len(self.marks)
 
-    def tracing(self, role: Role, step: str = "", position: str = "", frame: int = -1, name: str = "") -> Canvas:
+    def tracing(self, role: Role, step: str = "", position: str = "", frame: int = -1, name: str = "",
+                on: tuple[str, ...] = ()) -> Canvas:
         """Canvas that puts marks with this provenance on this one; see :class:`~tmm_sheets.drawing.marks.Provenance`."""
         other = Canvas.__new__(type(self))
-        vars(other).update(vars(self), by=Provenance(role, step, position, frame, name))
+        other.__dict__ = vars(self) | {"by": Provenance(role, step, position, frame, name, on)}
         return other
 
-    @contextmanager
-    def traced(self, role: Role, step: str = "", position: str = "", frame: int = -1, name: str = "") -> Iterator[None]:
-        """Context in which marks get this provenance; see :class:`~tmm_sheets.drawing.marks.Provenance`."""
-        before, self.by = self.by, Provenance(role, step, position, frame, name)
-        try:
-            yield
-        finally:
-            self.by = before
-
-    def as_role(self, role: Role) -> AbstractContextManager[None]:
-        """Context in which marks get this role; their step stays."""
-        return self.traced(role, *(self.by[1:] if self.by is not None else ()))
+    def as_role(self, role: Role) -> Canvas:
+        """Canvas that puts marks with this role and the step of this one on it."""
+        return self.tracing(role, *(self.by[1:] if self.by is not None else ()))
 
     def placed(self, plan: str, position: str, origin: complex, mu: float | tuple[float, float], turn: float = 0.0,
                mirror: bool = False) -> int:

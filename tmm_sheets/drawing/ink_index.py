@@ -72,7 +72,7 @@ class InkIndex:
         self.marks.extend(marks)
         for number, mark in enumerate(self.marks[first:], first):
             if mark.by is not None and mark.by.step and mark.by.role != "text":
-                for key in (mark.by[1:4], mark.by[1:]) if mark.by.name else (mark.by[1:4],):
+                for key in (mark.by[1:4], mark.by[1:5]) if mark.by.name else (mark.by[1:4],):
                     self._steps[key].append(number)
             if isinstance(mark, Text):
                 texts[number] = mark
@@ -126,15 +126,15 @@ class InkIndex:
 
     def of_step(self, by: Provenance) -> list[int]:
         """Numbers of the marks with this step, position and frame, and with this name if any has it (an arm of a sum)."""
-        return (by.name and self._steps.get(by[1:])) or self._steps.get(by[1:4], [])
+        return (by.name and self._steps.get(by[1:5])) or self._steps.get(by[1:4], [])
 
     def lines_of(self, by: Provenance) -> dict[int, tuple[tuple[complex, complex], Role]]:
         """Lines that came from a step, by the numbers of their marks: tail and tip, and role of each."""
-        if (found := self._lines.get(by[1:])) is None:
+        if (found := self._lines.get(by[1:5])) is None:
             marks = {n: self.marks[n] for n in self.of_step(by)}
             tips = {m.by: complex(m.points[0]) for m in marks.values() if isinstance(m, Fill)}
             found = {n: ((m.a, tips.get(m.by, m.b)), m.by.role) for n, m in marks.items() if isinstance(m, Line) and m.by}
-            self._lines[by[1:]] = found
+            self._lines[by[1:5]] = found
         return found
 
     def near(self, box: Box, reach: float) -> Numbers:

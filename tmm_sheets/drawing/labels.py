@@ -469,9 +469,9 @@ def draw_label(canvas: Canvas, label: Label, box: Box) -> None:
     """Draw a label where it stands, with its leader."""
     laid, shelf = letter(label.text, label.height), SHELF * bool(label.shelf)
     canvas.of, first = label.of, len(canvas.marks)
-    with canvas.traced("text", *(label.by[1:] if label.by is not None else ())):
-        canvas.put(laid, complex(box.x0, box.y0 + shelf + laid.descent), 0.0, label.text)
-        _draw_leader(canvas, label, box)
+    pen = canvas.tracing("text", *(label.by[1:] if label.by is not None else ()))
+    pen.put(laid, complex(box.x0, box.y0 + shelf + laid.descent), 0.0, label.text)
+    _draw_leader(pen, label, box)
     if len(canvas.marks) > first:
         # The leader line belongs to its label.
         canvas.groups[-1] = canvas.groups[-1]._replace(end=len(canvas.marks), part=label.part, anchor=label.anchor)

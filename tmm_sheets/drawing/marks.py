@@ -26,7 +26,8 @@ class Provenance(NamedTuple):
 
     ``step``: "plan/name" of the construction step; ``position``: label of the position; ``frame``: number of the
     :class:`PlacedFrame` it was drawn in (-1: none). ``name``: its own name if that of the step does not fit: of a vector its ends,
-    of a link its points.
+    of a link its points. ``on``: the steps it hangs on, points, and a direction or force behind them that it lies along; without
+    them it hangs on the point of its step.
     """
 
     role: Role
@@ -34,6 +35,7 @@ class Provenance(NamedTuple):
     position: str = ""
     frame: int = -1
     name: str = ""
+    on: tuple[str, ...] = ()
 
 
 class PlacedFrame(NamedTuple):

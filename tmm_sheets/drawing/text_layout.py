@@ -15,8 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.drawing.lettering import SIZES, advance, letter
-from tmm_sheets.drawing.lettering import widened as stretched
+from tmm_sheets.drawing.lettering import SIZES, advance, letter, widened as stretched
 from tmm_sheets.drawing.marks import Points, Text
 from tmm_sheets.words import tell
 

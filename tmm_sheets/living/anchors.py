@@ -1,8 +1,8 @@
 """What a mark hangs on: the steps at its ends and the direction it lies along, so that it can be drawn for any crank angle.
 
 A mark of a linkage's view was drawn for one position. Its points stand at a step's place, or so many millimetres from it, measured
-along the line it lies on: from one step to another where its name says so ("p–b"), along the step itself where that is a force, or
-along a direction of the plan to which its edges are parallel. That is all the page needs to draw it anew.
+along the line it lies on: from one step to another, or along a force or a direction. The drawing has told which; that is all the
+page needs to draw it anew.
 
 Markers show where a drawn curve is at an angle of the crank or the cam: on the axis of a graph over the angle, else passed from
 one numbered position to the next.
@@ -22,16 +22,10 @@ if TYPE_CHECKING:
 
 PLACED = ("origin", "mu", "turn", "mirror")
 """What says where a frame stands on the sheet."""
-HERE = 0.02
-"""What is this near stands in a place itself, mm."""
-BESIDE = 2.5
-"""Gap of a bar at a hinge, at most, mm."""
 BAR, NEAR, FAR = 2.6, 5.0, 9.0
 """Bar over a letter, at most; a letter farther off than FAR, at the end of a leader, comes as near as NEAR, mm."""
 LENGTH = True
 """Behind a place beside a point: it is a length of the mechanism, as large on the screen as that is."""
-ALIKE = 1e-5
-"""Sine of the angle between an edge and a direction that are parallel: coordinates are told to a micrometre."""
 
 
 def hung(record: Mapping[str, Any], sheet: Mapping[str, Any], known: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -71,15 +65,10 @@ class _Frame:
                  marks: list[dict[str, Any]], known: Mapping[str, Any]) -> None:
         self.plan, self.frame, self.label, self.drawn = plan, frame, label, marks
         self.k = plan["positions"].index(label)
-        self.steps = record["steps"]
-        self.known = known
-        points = {key: self.place(key) for key in plan["steps"] if key in known and self.steps[key]["kind"] in ("point", "vector")}
-        self.points = {key: z for key, z in points.items() if z is not None}
-        self.named = {self.steps[key]["name"]: key for key in self.points}
-        self.anchors: dict[str, str] = {}
-        self.lines: dict[str, list[list[str]]] = {}
-        self.blocks: dict[str, str] = {}
-        self.letters: dict[int, tuple[complex, Place | None]] = {}
+        self.steps = {key: record["steps"][key] for key in known}
+        self.places: dict[str, complex | None] = {}
+        self.vectors: dict[tuple[str, ...], None] = {}
+        self.letters: dict[int, tuple[complex, Place]] = {}
 
     def value(self, key: str) -> complex | None:
         """A step's value at the position; None where it is no point or not defined."""
@@ -96,148 +85,93 @@ class _Frame:
         return exp(1j * self.frame["turn"]) * (w.conjugate() if self.frame["mirror"] else w)
 
     def place(self, key: str) -> complex | None:
-        """Where a step's point lies on the sheet, mm."""
-        z = self.value(key)
-        return None if z is None else complex(*self.frame["origin"]) + self.turned(z)
+        """Where a step's point lies on the sheet, mm; None of what is no point, or none that the page computes."""
+        if key not in self.places:
+            z = self.value(key) if key in self.steps and self.steps[key]["kind"] in ("point", "vector") else None
+            self.places[key] = None if z is None else complex(*self.frame["origin"]) + self.turned(z)
+        return self.places[key]
 
     def marks(self) -> Iterator[dict[str, Any]]:
         """Marks with what they hang on, those on nothing left out; with a pole, hodographs of its vectors."""
-        lines_first = [m for turn in (0, 1, 2) for m in self.drawn
-                       if turn == (2 if m["role"] == "text" else "line" not in m["geometry"])]
-        for mark in lines_first:
-            still = mark["role"] in ("axis", "curve") and "position" not in mark
-            if mark.get("position") != self.label and not still and not (mark["role"] == "construction" and "position" not in mark):
-                continue
-            key, told = mark.get("step"), None
-            if mark["role"] != "curve":
-                told = self._mark(mark)
-            elif key in self.points and self.steps[key]["over"] == "positions":
-                told = {"kind": "path", "of": key}
-            if told is not None:
+        for mark in self.drawn:
+            of_all = "position" not in mark and mark["role"] in ("axis", "curve", "construction")
+            if (of_all or mark.get("position") == self.label) and (told := self._mark(mark)) is not None:
                 yield {"id": mark["id"], "style": mark["style"], "role": mark["role"], **told}
-        for key in dict.fromkeys(last for pairs in self.lines.values() for first, last in pairs if first == self.plan.get("pole")):
+        for key in dict.fromkeys(pair[-1] for pair in self.vectors if pair[0] == self.plan.get("pole")):
             yield {"id": f"hodograph of {key}", "style": "thin", "role": "hodograph", "kind": "path", "of": key}
 
     def _mark(self, mark: dict[str, Any]) -> dict[str, Any] | None:
-        shape, (kind, points) = mark["geometry"], _points(mark["geometry"])
-        pair = self._pair(mark, points)
-        key = mark.get("step", "")
-        if pair and mark["role"] in ("vector", "link") and pair not in self.lines.setdefault(key, []):
-            self.lines[key].append(pair)
+        shape, (kind, points), key = mark["geometry"], _points(mark["geometry"]), mark.get("step", "")
+        on = mark.get("on", [key])
+        ends = {name: z for name in on if (z := self.place(name)) is not None}
+        if mark["role"] == "curve":
+            return {"kind": "path", "of": key} if ends and self.steps[key]["over"] == "positions" else None
+        if not ends or (len(ends) == 1 and mark["role"] == "construction" and kind == "line"):
+            return None
+        pair = [[*ends][n] for n in (0, -1)] if len(ends) > 1 else []
+        along = on[-1:] if on[-1] not in ends else pair
         if mark["role"] == "text":
-            if kind == "line" and abs(points[1] - points[0]) > BAR:
-                return None  # a leader: the letter comes to its place without
-            return self._letter(mark, key, kind, points)
-        of_point = bool(pair) and key in self.points  # such as a wall of its slot: from one that is named to the other
-        along = (pair if of_point or mark["role"] != "symbol" else None) or self._along(key, points, mark["role"]) or pair
-        anchor = key if key in self.points else self.anchors.get(key)
-        if anchor is None and not pair and kind == "line":
-            anchor = next((name for z in points for name in self.points if abs(self.points[name] - z) < HERE), None)
-        if anchor is None and not pair:
-            return None
-        if not pair and mark["role"] == "construction" and kind == "line":
-            return None
-        self.anchors.setdefault(key, anchor or (pair or [""])[-1])
-        if anchor and len(along) == 1 and shape.get("closed"):
-            self.blocks[along[0]] = anchor
+            return self._letter(mark, kind, points, [*ends], along)
+        if pair and key == pair[1] and mark["role"] in ("vector", "link"):
+            self.vectors[tuple(pair)] = None
         more = {name: shape[kind][name] for name in ("radius", "from", "to") if name in shape.get(kind, {})}
-        if pair and more and abs(abs(self.points[pair[1]] - self.points[pair[0]]) - more["radius"]) < HERE:
-            points, along, more["reach"] = [self.points[pair[0]]], [], pair
+        if pair and more:
+            points, along, more["reach"] = [ends[pair[0]]], [], pair
         u = self.direction(along)
         if u is None:
             u, along = 1 + 0j, []
-        main = bool(pair) and kind == "line" and mark["style"] == "main"
-        ends = pair if main and of_point else [self._nearest(z, pair, mark["role"]) if pair else str(anchor) for z in points]
-        at: list[list[Any]] = [[of, *_mm((z - self.points[of]) / u)] for of, z in zip(ends, points, strict=True)]
-        if main and mark["role"] == "symbol" and not of_point:  # its free end is a place of the link, not of the paper
-            at[-1] = [pair[0], *_mm((points[-1] - self.points[pair[0]]) / u), LENGTH]
+        if key not in ends:  # of what lies between points each of its own hangs on the nearest
+            hung = [min(ends, key=lambda name: abs(ends[name] - z)) for z in points]
+        else:
+            hung = pair if pair and (kind == "line" or "reach" in more) else [key] * len(points)
+        at: list[list[Any]] = [[of, *_mm((z - ends[of]) / u)] for of, z in zip(hung, points, strict=False)]
+        if len(on) > 2 and along == on[-1:]:  # the free end of a link is a place of it, not of the paper
+            at[-1] = [on[0], *_mm((points[-1] - ends[on[0]]) / u), LENGTH]
         if kind == "arc":
             more |= {"from": more["from"] - phase(u), "to": more["to"] - phase(u)}
         if kind == "polyline" and shape.get("closed"):
             more["closed"] = True
         return {"kind": kind, "at": at, "along": along, **more}
 
-    def _letter(self, mark: dict[str, Any], key: str, kind: str, points: list[complex]) -> dict[str, Any] | None:
+    def _letter(self, mark: dict[str, Any], kind: str, points: list[complex], on: list[str],
+                along: list[str]) -> dict[str, Any] | None:
         """A sign of a lettering: it stands where the first sign does, which keeps its place beside its vector, link or point."""
+        if kind == "line" and abs(points[1] - points[0]) > BAR:
+            return None  # a leader: the letter comes to its place without
         lettering = mark.get("lettering", mark["id"])
         if lettering not in self.letters:
-            self.letters[lettering] = points[0], self._place_of_letter(key, points[0])
-        first, place = self.letters[lettering]
-        if place is None:
-            return None
-        anchor, local, along, other = place
+            self.letters[lettering] = points[0], self._place_of_letter(points[0], on, along)
+        first, (anchor, local, along, other) = self.letters[lettering]
         at = [[anchor, *_mm(local), *(other or ["", 0.0]), *_mm(z - first)] for z in points]
         shape = mark["geometry"][kind]
         text = {"height": shape["height"], "string": shape["string"]} if kind == "text" else {}
         return {"kind": kind, "at": at, "along": along, "lettering": lettering, **text}
 
-    def _place_of_letter(self, key: str, z: complex) -> Place | None:
-        """What a letter hangs on, its place beside that, mm, along which line, and between which points."""
-        if self._is_of_block(key, z):
-            off = z - self.points[self.blocks[key]]
-            return self.blocks[key], off * min(1.0, FAR / abs(off)) / (self.direction([key]) or 1), [key], None
-        if key in self.lines:
-            _, pair, share = min((self._beside(z, *pair) for pair in self.lines[key]), key=lambda found: found[0])
-            a, b = (self.points[name] for name in pair)
-            return pair[0], _nearer(z - a - share * (b - a)) / (self.direction(pair) or 1), pair, [pair[1], round(share, 6)]
-        anchor = key if key in self.points else self.anchors.get(key)
-        if anchor is None:
-            return None
-        along = [key] if key in self.known and self.steps[key]["kind"] in ("force", "direction") and self.value(key) else []
-        off = z - self.points[anchor]
-        return anchor, (off if along else _nearer(off)) / (self.direction(along) or 1), along, None
+    def _place_of_letter(self, z: complex, on: list[str], along: list[str]) -> Place:
+        """What a letter hangs on, its place beside that, mm, along which line, and between which points.
 
-    def _is_of_block(self, key: str, z: complex) -> bool:
-        """Whether a lettering is the number of a block: of the two of a direction that is the one farther off the bar."""
-        if key not in self.blocks or key not in self.lines:
-            return False
-        places = [complex(*m["geometry"]["text"]["at"]) for m in self.drawn if m.get("step") == key and "text" in m["geometry"]]
-        off = [min(self._beside(at + 1j * NEAR / 2, *pair)[0] for pair in self.lines[key]) for at in (z, *places)]
-        return len(places) > 1 and off[0] == max(off)
+        That of a point stands beside the vector that ends there.
+        """
+        beside = [along] if len(along) > 1 else [] if along else [list(pair) for pair in self.vectors if pair[-1] == on[0]]
+        if beside:
+            off, share, pair = min((self._beside(z, pair) for pair in beside), key=lambda found: abs(found[0]))
+            return pair[0], _nearer(off) / (self.direction(pair) or 1), pair, [pair[1], round(share, 6)]
+        off = z - (self.place(on[0]) or 0)
+        return on[0], (off if along else _nearer(off)) / (self.direction(along) or 1), along, None
 
-    def _beside(self, z: complex, first: str, last: str) -> tuple[float, list[str], float]:
-        """How far a place lies off a line, mm, the line, and which share of it is nearest."""
-        a, d = self.points[first], self.points[last] - self.points[first]
-        share = min(max(((z - a) * d.conjugate()).real / abs(d) ** 2, 0.0), 1.0) if abs(d) > 0 else 0.0
-        return abs(z - a - share * d), [first, last], share
-
-    def _pair(self, mark: dict[str, Any], points: list[complex]) -> list[str]:
-        """Steps at the ends of a mark that is called by them."""
-        first, _, last = mark.get("name", "").partition("–")
-        if not last or last not in self.named:
-            return []
-        other = self.named.get(first) or next((key for z in points for key, p in self.points.items() if abs(p - z) < HERE
-                                               and key != self.named[last]), None)
-        return [other, self.named[last]] if other else []
-
-    def _along(self, key: str, points: list[complex], role: str) -> list[str]:
-        """The step that a mark lies along: its own, or a direction of the plan to which an edge is parallel."""
-        if key in self.known and self.steps[key]["kind"] in ("force", "direction") and self.value(key) is not None:
-            return [key]
-        edges = [b - a for a, b in pairwise(points) if abs(b - a) > 1]
-        if role != "symbol" or not edges:
-            return []
-        for name in self.plan["steps"]:
-            if name in self.known and self.steps[name]["kind"] == "direction" and (z := self.value(name)) is not None:
-                u = self.turned(z)
-                if any(min(abs((e / u).imag), abs((e / u).real)) < ALIKE * abs(e / u) for e in edges):
-                    return [name]
-        return []
+    def _beside(self, z: complex, pair: list[str]) -> tuple[complex, float, list[str]]:
+        """How a place lies off a line between two points, mm, and which share of the line is nearest to it."""
+        a, b = (self.place(name) or 0j for name in pair)
+        share = min(max(((z - a) * (b - a).conjugate()).real / abs(b - a) ** 2, 0.0), 1.0) if a != b else 0.0
+        return z - a - share * (b - a), share, pair
 
     def direction(self, along: list[str]) -> complex | None:
-        """Unit vector on the sheet."""
-        values = [self.value(key) for key in along]
+        """Unit vector on the sheet; None of no step, of one that the page does not compute and of points at one place."""
+        values = [self.value(key) if key in self.steps else None for key in along]
         if not values or None in values:
             return None
         z = self.turned(values[-1] - (values[0] if len(values) > 1 else 0))  # type: ignore[operator]
         return z / abs(z) if abs(z) > 0 else None
-
-    def _nearest(self, z: complex, pair: list[str], role: str) -> str:
-        if role == "link":
-            near: str = min(self.points, key=lambda name: abs(self.points[name] - z))
-            if abs(self.points[near] - z) < BESIDE:
-                return near
-        return min(pair, key=lambda name: abs(self.points[name] - z))
 
 
 def _nearer(z: complex) -> complex:

@@ -6,8 +6,7 @@ from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets import results
-from tmm_sheets import words as catalogues
+from tmm_sheets import results, words as catalogues
 from tmm_sheets.construction.formula import Node, letters_of, reworded
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.meanings import bare, tables_of, words

@@ -233,8 +233,7 @@ def run_on_dask(works: Sequence[Task], order: Order, address: str) -> Iterator[O
         when dask is not installed or no scheduler answers at the address.
     """
     try:
-        from distributed import Client
-        from distributed import as_completed as finished
+        from distributed import Client, as_completed as finished
     except ImportError:
         raise BadInput(tell("--dask needs dask.distributed"), hint=quoting.install("cluster")) from None
     try:

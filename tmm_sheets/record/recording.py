@@ -469,9 +469,10 @@ def _mark(number: int, mark: Mark, view: str, block: bool, known: Container[str]
     geometry : ``line`` (two points), ``polyline`` (perhaps ``closed``), ``arc`` (centre, radius, from and to in rad
         counter-clockwise), ``circle``, ``text`` (at, height, angle, string, ``wide`` if its letters are stretched) or ``fill`` (a
         polygon), mm from the lower left corner of the paper
-    step, position : the step it shows, and at which position
-    name : its name, if it has one of its own
-    lettering : ``id`` of the first of the marks that are read as one text (letter, index, bar)
+    step, position : the step it shows, at which position
+    on : points it hangs on, then a direction; without, its step's
+    name : its own, if any
+    lettering : ``id`` of the first mark that is read with it (letter, index, bar)
     """
     found: dict[str, Any] = {"id": number, "view": view}
     by = mark.by
@@ -483,8 +484,10 @@ def _mark(number: int, mark: Mark, view: str, block: bool, known: Container[str]
         found["step"] = by.step
         if by.position:
             found["position"] = by.position
-    if by is not None and (name := getattr(by, "name", "")):
-        found["name"] = name
+        if on := [step for step in by.on if step in known]:
+            found["on"] = on
+    if by is not None and by.name:
+        found["name"] = by.name
     return found
 
 

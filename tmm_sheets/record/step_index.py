@@ -6,8 +6,7 @@ Arguments stand before the steps made of them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from itertools import chain
-from itertools import count as count_up
+from itertools import chain, count as count_up
 from typing import Any
 
 from tmm_sheets import result_files

@@ -250,8 +250,7 @@ def _framed(project: Project, n: int, canvas: Canvas) -> dict[str, str]:
     written, fields = project.variant.title_block, entries(project, n)
     canvas.of = FRAME
     canvas.begin(A1.outline, "", FRAME)
-    with canvas.as_role("frame"):
-        draw_frame(canvas, fields, written.form, written.first_sheet + n - 1, len(project.variant.sheets))
+    draw_frame(canvas.as_role("frame"), fields, written.form, written.first_sheet + n - 1, len(project.variant.sheets))
     return fields
 
 

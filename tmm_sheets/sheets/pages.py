@@ -237,9 +237,8 @@ def _put(piece: Piece, page: PaperPage, form: str) -> bool:
 def _drawn(project: Project, n: int, sheet: Drawing, page: PaperPage, number: int, count: int) -> Drawing:
     """A page with its frame and title block; dimensions, views and forms are told as on the sheet."""
     canvas = Canvas()
-    with canvas.as_role("frame"):
-        draw_frame(canvas, entries(project, n), FOLLOWING if number > 1 else project.variant.title_block.form, number, count,
-                   page.paper)
+    draw_frame(canvas.as_role("frame"), entries(project, n), FOLLOWING if number > 1 else project.variant.title_block.form, number,
+               count, page.paper)
     marks = list(canvas.marks)
     views = [View(said(None), page.paper.outline, ((0, len(marks)),))]
     dimensions = list[Dimension]()

@@ -238,12 +238,19 @@ class PlayerStage:
         """The same plan in the same place, at another position."""
         return replace(self, k=k)
 
-    def pen(self, step: Step | str, role: Role, name: str = "") -> Canvas:
-        """The canvas for marks that come from that step; see :class:`~tmm_sheets.drawing.marks.Trace`.
+    def pen(self, step: Step | str, role: Role, *points: Step | str, along: Step | None = None, name: str = "") -> Canvas:
+        """The canvas for marks that come from that step; see :class:`~tmm_sheets.drawing.marks.Provenance`.
 
-        It may be a step of another plan that is drawn in this frame: a force on a link in its position.
+        It may be a step of another plan that is drawn in this frame: a force on a link in its position. Marks hang on ``points``
+        and lie ``along`` a direction or from the first of them to the last, by which they are called unless they have a ``name``.
         """
-        return self.canvas.tracing(role, self.step(step).path, self.label, self.number, name)
+        if not points:
+            return self.canvas.tracing(role, self.step(step).path, self.label, self.number, name)
+        on = [self.step(point) for point in points]
+        if points[1:] and role != "text":
+            name = name or f"{on[0].name}–{on[-1].name}"
+        paths = tuple([step.path for step in (on if along is None else [*on, along])])
+        return self.canvas.tracing(role, self.step(step).path, self.label, self.number, name, paths)
 
     def step(self, step: Step | str) -> Step:
         """Step of the plan by its name."""
@@ -261,12 +268,12 @@ class PlayerStage:
     def vector(self, tail: Step | str, head: Step | str, style: str = "vector", size: float | None = None) -> None:
         """Arrow between the points of two steps, it is a mark of the second. A ``size``, mm, is that of a stubby head."""
         a, b = self.step(tail), self.step(head)
-        self.pen(b, "vector", f"{a.name}–{b.name}").arrow(self.at(a), self.at(b), style, size, size is not None)
+        self.pen(b, "vector", a, b).arrow(self.at(a), self.at(b), style, size, size is not None)
 
     def letters(self, step: Step | str, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,
-                at: complex | None = None, leader: bool = True) -> None:
-        """Ask for lettering that belongs to a step, at its point unless told; see :meth:`Canvas.label`."""
-        self.pen(step, "text").label(self.at(step) if at is None else at, markup, away, height, gap, leader)
+                at: complex | None = None, leader: bool = True, on: Iterable[Step | str] = (), along: Step | None = None) -> None:
+        """Ask for lettering that belongs to a step, at its point unless told, and hangs ``on`` points; see :meth:`Canvas.label`."""
+        self.pen(step, "text", *on, along=along).label(self.at(step) if at is None else at, markup, away, height, gap, leader)
 
     def dot(self, step: Step | str, radius: float = 0.6, style: str = "vector", at: complex | None = None) -> None:
         """Dot at the point of a step, or where it shows its value."""
@@ -316,7 +323,7 @@ def play(s: PlayerStage, steps: Iterable[Step | str] | None = None, style: str =
     """
     for step in map(s.step, s.plan if steps is None else steps):
         for h in (h for h in helpers(s, step) if only in ("", h.kind)):
-            pen = s.pen(step, "construction", _ends(s, step, h))
+            pen = s.pen(step, "construction", *_ends(s, step, h))
             if h.kind == "line":
                 pen.ray_line(s.frame(h.a), s.frame(h.b), style, over)
             elif h.kind == "circle":
@@ -325,7 +332,7 @@ def play(s: PlayerStage, steps: Iterable[Step | str] | None = None, style: str =
                 pen.arc_mark(s.frame(h.a), s.frame(h.b), cut, style)
 
 
-def _ends(s: PlayerStage, step: Step, h: Helper) -> str:
-    """A helper line from the point of another step is called by both."""
-    starts = (a for a in step.args if isinstance(a, Step) and a.rule.gives in ("point", "vector"))
-    return next((f"{a.name}–{step.name}" for a in starts if a.at(s.k or 0) == h.a), "")
+def _ends(s: PlayerStage, step: Step, h: Helper) -> tuple[Step, ...]:
+    """A helper line from the pole or the point of another step hangs on both."""
+    starts = (*([] if s.plan.pole is None else [s.plan[s.plan.pole]]), *(a for a in step.args if isinstance(a, Step)))
+    return next(((a, step) for a in starts if a.rule.gives in ("point", "vector") and a.at(s.k or 0) == h.a), ())

@@ -126,7 +126,7 @@ def _marks(marks: Sequence[Mark], points: list[Any]) -> dict[str, Any]:
 
 def _marks_of(tree: dict[str, Any], points: Any) -> Iterator[Mark]:
     of, traces, styles, letters = tree["tables"]
-    traces = [None if row is None else Provenance(*row) for row in traces]
+    traces = [None if row is None else Provenance(*row)._replace(on=tuple(row[-1])) for row in traces]
     looks = [[styles[k] for k in some] for some in tree["styles"]]
     kinds, arcs, texts, lengths = tree["kinds"], tree["arcs"], tree["texts"], tree["lengths"]
     straight, centres = (n := 2 * kinds.count("L")), n + len(arcs)

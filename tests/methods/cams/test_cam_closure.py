@@ -4,8 +4,7 @@ from math import pi, radians
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from shapely import Polygon
 
 from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data, told

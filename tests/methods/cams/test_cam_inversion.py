@@ -4,10 +4,8 @@ from math import pi
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
-from shapely import Polygon
-from shapely import intersection as meet
+from hypothesis import assume, given, strategies as st
+from shapely import Polygon, intersection as meet
 
 from tests.methods.cams.cam_cases import flat_data, rocker_data, told
 from tmm_sheets.construction.protocol import sentences

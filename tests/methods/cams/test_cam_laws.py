@@ -5,8 +5,7 @@ from math import pi, radians
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 
 from tests.methods.cams.cam_cases import cam_data, sine_motion
 from tmm_sheets.errors import CannotBuild

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tests.methods.cams.cam_cases import at_positions, cam_data, flat_data, rocker_data, sine_motion
 from tmm_sheets.construction.protocol import sentences

@@ -8,8 +8,7 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from shapely import Polygon
 
 from tests.methods.cams.cam_cases import cam_data, centre_profile, sine_motion, told

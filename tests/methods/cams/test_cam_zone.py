@@ -6,10 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from shapely import Point, Polygon, box
-from shapely import intersection as meet
+from hypothesis import given, strategies as st
+from shapely import Point, Polygon, box, intersection as meet
 
 from tests.few import few
 from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data, told

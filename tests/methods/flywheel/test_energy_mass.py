@@ -6,8 +6,7 @@ from math import cos, pi, tan
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tests.methods.flywheel.running import speed
 from tmm_sheets.construction.arithmetic import continuous_argmax

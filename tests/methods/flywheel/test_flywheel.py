@@ -12,8 +12,7 @@ from types import SimpleNamespace
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from tests.methods.flywheel.running import speed_of
 from tests.methods.linkage import shaper_truth as truth

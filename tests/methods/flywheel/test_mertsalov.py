@@ -10,8 +10,7 @@ from types import SimpleNamespace
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from tests.methods.cams.cam_cases import told
 from tests.methods.flywheel import press_truth as truth

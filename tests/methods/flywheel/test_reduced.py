@@ -5,8 +5,7 @@ from math import asin
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tests.methods.linkage import shaper_truth, truth
 from tests.methods.linkage.mechanisms import mechanism, mechanisms

@@ -13,14 +13,12 @@ from tmm_sheets.construction.step import Given, GivenNumber, Plan, Reported, Ste
 from tmm_sheets.methods.gears import (
     gear_engagement,
     gear_formulas,
+    gear_pair as pairs,
     planetary,
     rack,
+    reducer as reducers,
     train_steps,
 )
-from tmm_sheets.methods.gears import (
-    gear_pair as pairs,
-)
-from tmm_sheets.methods.gears import reducer as reducers
 from tmm_sheets.methods.gears.gear_pair import gear_pair, settled
 from tmm_sheets.methods.gears.reducer import reducer
 from tmm_sheets.task.schema import GearTable

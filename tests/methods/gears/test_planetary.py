@@ -6,8 +6,7 @@ from math import gcd
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tmm_sheets.methods.gears.planetary import (
     EFFICIENCY,

@@ -6,8 +6,7 @@ from math import cos, pi, radians, sin, sqrt
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import example, given
-from hypothesis import strategies as st
+from hypothesis import example, given, strategies as st
 from shapely import MultiPoint, Point, Polygon, difference, union_all
 
 from tests.methods.gears.test_gears import data, polygon

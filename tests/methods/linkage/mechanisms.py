@@ -10,8 +10,7 @@ from cmath import rect
 from dataclasses import dataclass, field
 from math import cos, pi, sin
 
-from hypothesis import assume
-from hypothesis import strategies as st
+from hypothesis import assume, strategies as st
 
 from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup

@@ -7,8 +7,7 @@ from time import perf_counter
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tests import project_files
 from tests.methods.linkage.mechanisms import mechanism

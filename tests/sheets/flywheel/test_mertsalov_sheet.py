@@ -20,8 +20,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.wheel_methods import flywheel
 from tmm_sheets.project import Project
 from tmm_sheets.resources import template
-from tmm_sheets.sheets import composition
-from tmm_sheets.sheets import views as kinds
+from tmm_sheets.sheets import composition, views as kinds
 from tmm_sheets.sheets.flywheel import mertsalov
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.sheets.views import arrangement, function

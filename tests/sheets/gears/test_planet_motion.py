@@ -11,8 +11,7 @@ from tmm_sheets.catalogue import read
 from tmm_sheets.methods.gears.train import Train
 from tmm_sheets.methods.gears.train_steps import Mesh
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.gears import train as train_views
-from tmm_sheets.sheets.gears import train_scheme
+from tmm_sheets.sheets.gears import train as train_views, train_scheme
 from tmm_sheets.sheets.sheet import composed
 
 

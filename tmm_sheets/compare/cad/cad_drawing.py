@@ -42,8 +42,16 @@ from tmm_sheets.compare.cad.plan_judge import JudgedPlans, judge_plans
 from tmm_sheets.compare.cad.plan_views import PlanRecord
 from tmm_sheets.compare.cad.registration import fitting, register
 from tmm_sheets.compare.diagnosis.built_plan import DrawnPlan, FigureOf, built_otherwise, led_elsewhere, rebuilt, vanished
-from tmm_sheets.compare.elements import Element, ElementView, KnownSheet, drawn, interruptions, known_sheet, sheet_numbers
-from tmm_sheets.compare.elements import views as views_of
+from tmm_sheets.compare.elements import (
+    Element,
+    ElementView,
+    KnownSheet,
+    drawn,
+    interruptions,
+    known_sheet,
+    sheet_numbers,
+    views as views_of,
+)
 from tmm_sheets.compare.findings import Report, verdict, worst
 from tmm_sheets.compare.placing import BESIDE, Placing, links, moved, read_places, symbol
 from tmm_sheets.drawing.marks import Drawing, Points

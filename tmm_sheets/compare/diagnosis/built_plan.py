@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,7 +36,6 @@ from tmm_sheets.compare.findings import (
 )
 from tmm_sheets.compare.placing import HINGE, Placing, moved, shafts
 from tmm_sheets.construction.error import Errors
-from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.step import Plan, Step, value_at
 from tmm_sheets.drawing.marks import Fill, PlacedFrame, Points, Role
 from tmm_sheets.words import marked, tell
@@ -110,17 +110,11 @@ def drawn_plan(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView) 
     shown = _lines_of(known, plans, view, "vector")
     if shown is None or shown.frame.position not in shown.plan.labels:
         return None
-    vectors, points = shown.vectors, []
-    ends = np.concatenate([e.points for e in vectors])
-    for step in shown.plan:
-        if np.asarray(step.value).dtype.kind == "c" and step.rule.gives in ("point", "vector", "force"):
-            z = shown.place(step.value, shown.k)
-            if np.isfinite(z) and np.abs(ends - z).min() < AT_POINT:
-                points.append(PlanPoint(step, z, z, shown.k))
-    at = np.array([p.was for p in points], dtype=complex)
-    both = sum(len(at) > 0 and all(np.abs(at - z).min() < AT_POINT for z in e.points) for e in vectors)
+    on = {path for e in shown.vectors for path in e.on}
+    places = [(step, shown.place(step.value, shown.k)) for step in shown.plan if step.path in on]
+    shown = replace(shown, points=tuple(PlanPoint(step, z, z, shown.k) for step, z in places if np.isfinite(z)))
     # Forces at the points of a mechanism are no plan: only one end of each is a point.
-    return replace(shown, points=tuple(points)) if both > len(vectors) / 2 else None
+    return shown if sum(len(_hung(e, shown.points)) > 1 for e in shown.vectors) > len(shown.vectors) / 2 else None
 
 
 def drawn_positions(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView) -> DrawnPlan | None:
@@ -149,43 +143,31 @@ def _lines_of(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView, r
     return DrawnPlan(plan, frame, k, tuple(e for e, _ in some), ())
 
 
-def _of(e: Element, points: Sequence[PlanPoint]) -> list[PlanPoint]:
-    """The points that an element may belong to: those of its position."""
-    return [p for p in points if not p.label or p.label == e.position]
+def _hung(e: Element, points: Sequence[PlanPoint]) -> list[PlanPoint]:
+    """The points of its position that an element hangs on."""
+    return [p for p in points if p.step.path in e.on and p.label in ("", e.position)]
 
 
 def between(e: Element, points: Sequence[PlanPoint]) -> Points:
-    """A line through points of the plan where these come to lie; it reaches as far over them as it did."""
+    """A line through the points it hangs on where these come to lie; it reaches as far over them as it did."""
     a, b = complex(e.points[0]), complex(e.points[-1])
     u = (b - a) / max(abs(b - a), 1e-9)
-    along = [((p.was - a) * np.conj(u), p) for p in _of(e, points)]
+    along = [(float(((p.was - a) * np.conj(u)).real), p) for p in _hung(e, points)]
     short = HINGE if e.role == "link" else AT_POINT  # a link ends at the circle of its hinge
-    on = [(z.real, p) for z, p in along if abs(z.imag) < AT_POINT and -short < z.real < abs(b - a) + short]
+    on = sorted((one for one in along if -short < one[0] < abs(b - a) + short), key=itemgetter(0))
     if len(on) < 2:
         return np.array([a, b])
-    low, high = min(s for s, _ in on), max(s for s, _ in on)
-    first, last = (_meant(e, [p for s, p in on if abs(s - end) < AT_POINT]) for end in (low, high))
+    (low, first), (high, last) = on[0], on[-1]
     if abs(first.now - first.was) < 1e-9 and abs(last.now - last.was) < 1e-9:
         return np.array([a, b])
     v = (last.now - first.now) / abs(last.now - first.now) if abs(last.now - first.now) > 1e-6 else u
     return np.array([first.now - low * v, last.now + (abs(b - a) - high) * v])
 
 
-def _meant(e: Element, some: Sequence[PlanPoint]) -> PlanPoint:
-    """Of points in one place that which an element is named after: they may come to lie apart."""
-    names = e.name.split("–")
-    return min(some, key=lambda p: (p.step.path != e.step, letter_of(p.step) not in names))
-
-
 def rebuilt(e: Element, points: Sequence[PlanPoint]) -> Element:
     """An element of a plan whose points come to lie elsewhere; what hangs over a point, and heads, keep their size."""
-    points = _of(e, points)
-    at_one = [p for p in points if p.label]
-    if at_one and e.role in ("symbol", "point") and e.kind != "circle":  # a symbol goes with the point it is drawn at
-        near = min(at_one, key=lambda p: abs(p.was - e.middle))
-        stays = abs(near.was - e.middle) > MARK or abs(near.now - near.was) < AT_POINT
-        return e if stays else moved(e, Placing(shift=near.now - near.was))
-    if e.kind == "line":
+    symbol = e.role in ("symbol", "point") and any(p.label for p in points)  # it goes with the point it is drawn at
+    if e.kind == "line" and not symbol:
         new = between(e, points)
         if np.array_equal(new, e.points):
             return e
@@ -197,12 +179,9 @@ def rebuilt(e: Element, points: Sequence[PlanPoint]) -> Element:
         heads = [m._replace(points=_head(np.asarray(m.points), e.points, new, turn)) if isinstance(m, Fill) else m for m in e.marks]
         marks = shafts(e.marks, heads, e.points, new)
         return replace(e, points=new, fills=fills, marks=marks)
-    at = e.centre if e.kind == "circle" else e.middle if e.kind == "text" and e.step else None
-    off = min((abs(p.was - at) for p in points), default=np.inf) if at is not None else np.inf
-    if at is None or off > (AT_POINT if e.kind == "circle" else BESIDE):
-        return e
-    one = _meant(e, [p for p in points if abs(p.was - at) < off + AT_POINT])
-    return moved(e, Placing(shift=one.now - one.was))
+    at, far = (e.centre, AT_POINT) if e.kind == "circle" else (e.middle, MARK if symbol else BESIDE if e.kind == "text" else 0.0)
+    near = min(_hung(e, points), key=lambda p: abs(p.was - at), default=None)
+    return e if near is None or abs(near.was - at) > far else moved(e, Placing(shift=near.now - near.was))
 
 
 def vanished(e: Element) -> bool:

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.compare.measured import linkage_items
-from tmm_sheets.compare.measured import measurable as units
+from tmm_sheets.compare.measured import linkage_items, measurable as units
 from tmm_sheets.compare.measured.measurable import (
     CALCULATED,
     DEGREES,

@@ -34,8 +34,7 @@ from tmm_sheets.compare.measured.measurable import (
     size,
     way,
 )
-from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction import rules
+from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.rules import LINE_LINE

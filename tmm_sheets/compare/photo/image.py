@@ -29,14 +29,22 @@ from tmm_sheets.compare.diagnosis.built_plan import (
     rebuilt,
     vanished,
 )
-from tmm_sheets.compare.elements import SAMPLED, Element, ElementView, KnownSheet, dashed, known_sheet, sampled, sheet_numbers
-from tmm_sheets.compare.elements import views as views_of
+from tmm_sheets.compare.elements import (
+    SAMPLED,
+    Element,
+    ElementView,
+    KnownSheet,
+    dashed,
+    known_sheet,
+    sampled,
+    sheet_numbers,
+    views as views_of,
+)
 from tmm_sheets.compare.findings import Report, millimetres, verdict
 from tmm_sheets.compare.photo import lost_ink, need_opencv, overlay, photograph, placed_views, rectification, small_marks, tracing
 from tmm_sheets.compare.photo.fit_check import MATCH, SIDE, SIDES
 from tmm_sheets.compare.photo.judging import PhotoFinding, judge, tolerance_of
-from tmm_sheets.compare.photo.lost_ink import Mask, lost_to_threshold, mask_washed_out
-from tmm_sheets.compare.photo.lost_ink import at as hidden_at
+from tmm_sheets.compare.photo.lost_ink import Mask, at as hidden_at, lost_to_threshold, mask_washed_out
 from tmm_sheets.compare.photo.photo_report import image_report
 from tmm_sheets.compare.photo.photograph import SMALLER, Photograph
 from tmm_sheets.compare.photo.profiles import line_level, noise_level, pixels, sample

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction import rules
+from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.expression import Directions, Reals
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.step import Helper, Plan, Rule, Step, symbol

@@ -23,8 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction import rules
+from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.expression import Directions, Points, Reals, Signs, primitive
 from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, Gaps, angle_of, direction
 from tmm_sheets.construction.step import Plan, Rule, Step

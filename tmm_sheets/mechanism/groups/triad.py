@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction import rules
+from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.indices import on_link, pair_index
 from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild

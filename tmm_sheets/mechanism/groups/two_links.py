@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction import rules
+from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.indices import on_link, pair_index
 from tmm_sheets.construction.step import Helper, Plan, Rule, Step
 from tmm_sheets.mechanism.groups.contexts import (

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction import rules
+from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.expression import Floats, Points, Reals, Signs, primitive
 from tmm_sheets.construction.step import Helper, Plan, Reading, Rule, Step, StepTable, record
 from tmm_sheets.methods.cams.cam_displacement import Displacement, ExactMotion

@@ -19,8 +19,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction import rules
+from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.expression import Complex, Directions, Floats, Points, Reals, Signs, primitive
 from tmm_sheets.construction.step import Given, Helper, Plan, Reading, Rule, Step, StepTable, record
 from tmm_sheets.errors import CannotBuild

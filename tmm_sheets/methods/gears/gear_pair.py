@@ -12,8 +12,7 @@ import numpy.typing as npt
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.scale import Scale, fit_standard
 from tmm_sheets.construction.step import Plan, Reported, Rule, Step, planned, record
-from tmm_sheets.methods.gears import gear_engagement as ge
-from tmm_sheets.methods.gears import rack
+from tmm_sheets.methods.gears import gear_engagement as ge, rack
 from tmm_sheets.methods.gears.gear_engagement import on_normal, unrolled
 from tmm_sheets.methods.gears.gear_formulas import RACK_SIZES, GearData, given
 from tmm_sheets.methods.gears.gear_geometry import GearWheel, PairGeometry, warnings_of

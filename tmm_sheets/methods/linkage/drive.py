@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction import rules
+from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.expression import Floats, Reals, primitive
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.step import Given, GivenNumber, Helper, Plan, Rule, Step

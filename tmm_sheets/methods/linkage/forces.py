@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction import rules
+from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.expression import Floats, primitive
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.step import FoundNumber, Given, Plan, Rule, SearchCount, Step, symbol, value_at

@@ -17,8 +17,7 @@ from typing import Any, ClassVar, cast
 
 import numpy as np
 
-from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction import rules
+from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.function import Replay
 from tmm_sheets.construction.indices import on_link, pair_index
 from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step, value_of

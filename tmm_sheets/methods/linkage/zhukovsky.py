@@ -11,8 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction import rules
+from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.step import Helper, Plan, Rule, Step, symbol
 from tmm_sheets.mechanism.groups.contexts import Load
 from tmm_sheets.methods.linkage.forces import GearForce, InputForce, contact_point

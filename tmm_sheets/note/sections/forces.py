@@ -272,10 +272,8 @@ def _arm(r: Reader, name: str, step: Step) -> dict[str, Any]:
         return {}
     quantities = [r.measured(letters_of(moment.name), abs(value), "N*m", moment), r.measured(letters_of(force.name), f, "N", force)]
     found |= {"zero": False, "arm": r.checked(letters_of(name), lambda m, x: m / x, quantities, step)}
-    total = moment.args[0]
-    made = _sum(r, total, moment.name, moment) if total.rule.name == "sum of moments" else None
-    if made is not None:
-        found |= {"equation": made[0], "moment": made[1], "about": lettered(total.args[0].name)}
+    if made := _sum(r, moment.args[0], moment.name, moment):
+        found |= {"equation": made[0], "moment": made[1], "about": lettered(moment.args[0].args[0].name)}
     return found
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import expression
+from tmm_sheets.construction.equation import tree_of_step
 from tmm_sheets.construction.step import Step
 from tmm_sheets.note.document import Rows, ShownFormula, Text, lettered
 from tmm_sheets.note.reader import Column, NoteQuantity, Reader, scale_text, symbol_of
@@ -172,7 +173,7 @@ def train_fields(r: Reader) -> dict[str, Any]:
         "sizes": [{"formula": formula} for unit, formula in whole if unit == "mm"],
         "willis": [{"formula": formula} for unit, formula in whole if unit != "mm"],
         "carriers": any(m.carrier for m in train.meshes),
-        "closed": any(step.rule.name == "speed by all equations of Willis" for step in plan),
+        "closed": any(len(step.args) > 1 and tree_of_step(step) is None for step in plan),
         "mobility": r.number(len(driving), "", "train.speeds"),
         "sheet": r.sheet("train.scheme"),
         "speeds": _speeds(r),
@@ -189,11 +190,10 @@ def train_fields(r: Reader) -> dict[str, Any]:
 
 def _formula(r: Reader, step: Step) -> ShownFormula | None:
     """Formula of a step with its numbers; None for what is given."""
-    if step.rule.name == "given speed":
-        return None
-    if step.rule.name == "speed on the same shaft":
-        return r.written(r.letters_of(step), expression.Argument(0), [r.quantity(step.args[0])], r.quantity(step))
-    found = r.formula(step)
+    tree, made = step.rule.tree(len(step.args)), [a for a in step.args if isinstance(a, Step)]
+    if made and isinstance(tree, expression.Argument):  # on the shaft of another wheel
+        return r.written(r.letters_of(step), tree, [r.quantity(made[0])], r.quantity(step))
+    found = r.formula(step) if made else None
     return found if found is not None and found.numbers is not None else None
 
 

@@ -395,8 +395,7 @@ def plate(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     scale = standard((p.l1 + p.l2, room.width), (0.3 * (p.l1 + p.l2), room.height - 24))
     canvas.title(box, tr("Plate of the follower"), ratio(scale))
     left, right = (p.l1, p.l2) if cam.right > 0 else (p.l2, p.l1)
-    with canvas.as_role("symbol"):
-        axis = _plate_symbol(canvas, room, scale.mm(left), scale.mm(right))
+    axis = _plate_symbol(canvas.as_role("symbol"), room, scale.mm(left), scale.mm(right))
     a, b = axis - scale.mm(left), axis + scale.mm(right)
     names = ("l_1", "l_2") if cam.right > 0 else ("l_2", "l_1")
     canvas.dimension(a, axis, -11.0, f"{names[0]} = {fixed(left * 1e3, 1)}", factor=1e3 * scale.mu)

@@ -495,8 +495,7 @@ def wheel(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -
     """
     w = project.flywheel.wheel
     if w is not None:
-        with canvas.as_role("symbol"):
-            _sketch(w, canvas, box)
+        _sketch(w, canvas.as_role("symbol"), box)
         return
     title, lines = _without_sketch(project.flywheel)
     left = canvas.title(box, title)

@@ -214,6 +214,15 @@ class TrainScheme:
         self.front = complex(right - reach, self.axis)
         self.zero = complex(left + room / 2 - self.speed.mm(real.centre.real), self.axis)
 
+    def draw(self) -> None:
+        """Draw the three views."""
+        canvas = self.canvas
+        self.canvas = canvas.as_role("symbol")
+        self.axial()
+        self.end_views()
+        self.canvas = canvas
+        self.velocities()
+
     def stretch(self, share: float) -> None:
         """Draw the axial view so many times wider, as far as that looks well."""
         share = min(max(share, 1.0), STRETCHED)

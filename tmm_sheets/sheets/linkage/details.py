@@ -173,13 +173,13 @@ def dense(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     window = Box(box.x0, box.y0, box.x1, box.y1 - HEAD)
     half = min(window.width - 2 * found.beside, window.height) / 2
     canvas.title(box, f"{name} ({number(found.times(half))}:1)", str(found.factor(half)))
-    with canvas.as_role("symbol"):
-        canvas.window(window.centre, half)
-        radius = found.draw(project, canvas, window.centre, half)
-        canvas.begin(canvas.parts[found.part].box, "", VIEW)
-        canvas.window(found.centre, radius)
-        # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
-        canvas.label(found.centre, name, found.away, 5.0, radius + 2.0, shelf=radius)
+    pen = canvas.as_role("symbol")
+    pen.window(window.centre, half)
+    radius = found.draw(project, pen, window.centre, half)
+    pen.begin(canvas.parts[found.part].box, "", VIEW)
+    pen.window(found.centre, radius)
+    # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
+    pen.label(found.centre, name, found.away, 5.0, radius + 2.0, shelf=radius)
 
 
 def next_name(canvas: Canvas) -> str:
@@ -293,7 +293,7 @@ class Corner(Dense):
         seen = {v: part for v in self.vectors
                 if (part := chord(middle, half, at[v.tail], at[v.head])) and abs(part[1] - part[0]) >= 1.0}
         for v, (a, b) in seen.items():
-            pen = s.pen(v.head, "symbol", f"{v.tail}–{v.head}")
+            pen = s.pen(v.head, "symbol", v.tail, v.head)
             (pen.arrow if abs(b - at[v.head]) < 1e-9 and abs(b - a) > 3.0 else pen.line)(a, b, "vector")
             pen.label((a + b) / 2, v.sign, 1j * (b - a), LETTERS, 1.0)
         letters = {name: name if name.isdigit() else link_marks.indexed(self.plan[name].symbol or name) for name in self.names}

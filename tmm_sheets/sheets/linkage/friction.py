@@ -200,10 +200,10 @@ def _turning(project: Project, s: PlayerStage, index: str, step: Step, force: co
     """A journal, its circle of friction, the reaction that touches it, the relative turning."""
     of, k, hinge = _friction(project), project.force_index, _hinge(_friction(project), index)
     turn, centre, journal = of.turning[index], s.at(hinge), float(of.radii[hinge].args[1]) / s.frame.mu[1]
-    with s.canvas.as_role("symbol"):
-        s.canvas.circle(centre, journal, "main")
-        for u in (1, 1j):
-            s.canvas.line(centre - (journal + 4) * u, centre + (journal + 4) * u, "centre")
+    symbol = s.canvas.as_role("symbol")
+    symbol.circle(centre, journal, "main")
+    for u in (1, 1j):
+        symbol.line(centre - (journal + 4) * u, centre + (journal + 4) * u, "centre")
     _reaction(project, s, step, index, force, journal + 14.0)
     pen, way = s.pen(of.radii[hinge], "dimension"), -1j * force * (0.8 + 0.6j) / abs(force) if force else 1 + 0j
     pen.arrow(centre, centre + journal * way, "thin", 2.5)
@@ -222,11 +222,10 @@ def _sliding(project: Project, s: PlayerStage, index: str, step: Step, force: co
     centre, v, turn = s.at(_hinge(of, index)), complex(of.sliding[index].at(k)), float(of.deviations[index].at(k))
     normal = force * complex(np.exp(-1j * turn)) / abs(force) if force else 1j * v / abs(v) if v else 1j
     along, thick = -1j * normal, half / 6
-    with canvas.as_role("symbol"):
-        for side in (thick, -thick):
-            a, b = (centre + x * along + side * normal for x in (-half, half))
-            symbols.fixed_guide(canvas, a, b, 1 if side > 0 else -1)
-        symbols.block(canvas, centre, along, size=(4 * thick, 2 * thick))
+    for side in (thick, -thick):
+        a, b = (centre + x * along + side * normal for x in (-half, half))
+        symbols.fixed_guide(canvas, a, b, 1 if side > 0 else -1)
+    symbols.block(canvas, centre, along, size=(4 * thick, 2 * thick))
     length = half + ARROW / 4
     _reaction(project, s, step, index, force, length)
     if force:

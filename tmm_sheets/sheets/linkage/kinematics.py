@@ -99,7 +99,7 @@ def _way_of_crank(project: Project, s: PlayerStage) -> None:
     low, high = sorted(float(cycle.world(turned)) for turned in (0.0, cycle.period))
     low -= BEYOND_SWING / radius
     high = min(high + BEYOND_SWING / radius, low + 2 * pi)
-    s.pen(c.pin, "construction", f"{c.pivot}–{c.pin}").arc(s.at(c.pivot), radius, low, high, "thin")
+    s.pen(c.pin, "construction", c.pivot, c.pin).arc(s.at(c.pivot), radius, low, high, "thin")
 
 
 BEYOND_SWING = 5.0
@@ -368,7 +368,7 @@ def _named_angles(project: Project, s: PlayerStage) -> None:
     for k, angle in angles.items():
         name = f"{c.pin}_{k}k"
         for end in (c.pivot, far):
-            here.pen(name, "link", f"{end}–{name}").line(here.at(end), here.at(name), "hidden")
+            here.pen(name, "link", end, name).line(here.at(end), here.at(name), "hidden")
         here.dot(name, 0.8, "main")
         here.letters(name, f"{c.pin}_{{{k}k}}", here.at(name) - pivot, gap=1.5)
         # The shorter arc lies outside: each has a part with no other beyond it, and is named there.
@@ -579,7 +579,8 @@ def _vectors(s: PlayerStage, size: float, symbols_at: bool) -> dict[tuple[str, s
             # No shorter vector from the same point covers the place of its sign.
             along = [(complex(s.value(other.head)) - a) / (b - a) for other in s.plan.segments if other.tail is seg.tail]
             covered = max((z.real for z in along if abs(z.imag) < 1e-6 and z.real < 0.95), default=0.0)
-            s.letters(seg.head, seg.symbol, 1j * (b - a), at=s.frame(a + (1 + max(covered, 0.0)) / 2 * (b - a)))
+            at = s.frame(a + (1 + max(covered, 0.0)) / 2 * (b - a))
+            s.letters(seg.head, seg.symbol, 1j * (b - a), at=at, on=(seg.tail, seg.head))
     return tiny
 
 

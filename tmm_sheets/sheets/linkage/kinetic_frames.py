@@ -39,13 +39,17 @@ WANTED, SHORTER = 100.0, 0.8
 
 @dataclass(frozen=True)
 class Shown:
-    """A force on a scheme: sheet markup, the point in the plan's unit, the vector, N, its step and that of its moment or arm."""
+    """A force on a scheme: sheet markup, the point in the plan's unit, the vector, N, its step and that of its moment or arm.
+
+    ``on``: the point it acts at wherever the mechanism is, empty if it is found for this position only.
+    """
 
     symbol: str
     at: complex
     vector: complex
     step: Step
     arm: Step
+    on: tuple[Step, ...]
 
     @property
     def whole(self) -> bool:
@@ -97,21 +101,22 @@ def outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sho
 def shown_load(forces: Kinetostatics, load: Load, about: Step, k: int) -> Shown:
     """A load as it is shown, its arm about a point."""
     arm = forces.sum_about(about, load.vector) or load.vector
-    return Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k)), load.vector, arm)
+    return Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k)), load.vector, arm, (load.at,))
 
 
 def _hinge(project: Project, about: Step, reaction: OuterReaction, k: int) -> list[Shown]:
     """Reaction in an outer turning pair, as its normal and tangential parts where the method splits it; arms about a point."""
     study = project.study
     name = pair_index(reaction.link, project.mechanism.owner(reaction.point))
-    at, step = complex(study.positions.points[reaction.point].at(k)), study.forces.reactions[f"F{name}"]
+    hinge, step = study.positions.points[reaction.point], study.forces.reactions[f"F{name}"]
+    at, on = complex(hinge.at(k)), (hinge,)
     total = complex(step.at(k))
     part = study.forces.parts.get(f"F{name}")
     if part is None:
-        return [Shown(f"F̅_{{{name}}}", at, total, step, step)]
+        return [Shown(f"F̅_{{{name}}}", at, total, step, step, on)]
     tangential = complex(part.at(k))
-    return [Shown(f"F̅_{{{name}}}^n", at, total - tangential, step, study.forces.about_special(about) or step),
-            Shown(f"F̅_{{{name}}}^τ", at, tangential, part, study.forces.sum_about(about, part) or step)]
+    return [Shown(f"F̅_{{{name}}}^n", at, total - tangential, step, study.forces.about_special(about) or step, on),
+            Shown(f"F̅_{{{name}}}^τ", at, tangential, part, study.forces.sum_about(about, part) or step, on)]
 
 
 def _guided(project: Project, foot: str, reaction: OuterReaction, k: int) -> tuple[Shown, list[Couple]]:
@@ -125,7 +130,8 @@ def _guided(project: Project, foot: str, reaction: OuterReaction, k: int) -> tup
     step, turning = forces.reactions[f"F{name}"], forces.couples[f"F{name}"]
     f, u, couple = complex(step.at(k)), complex(pos.guide_directions[guide].at(k)), float(np.real(turning.at(k)))
     at, origin = (complex(pos.points[p].at(k)) for p in (foot, reaction.point))
-    at -= u * ((at - origin) * np.conj(u)).real
+    off = ((at - origin) * np.conj(u)).real
+    at -= u * off
     across = (np.conj(u) * f).imag
     offset = couple / across if across else 0.0
     acts = not is_zero(f, forces.force_size(k))
@@ -133,7 +139,8 @@ def _guided(project: Project, foot: str, reaction: OuterReaction, k: int) -> tup
     if not is_zero(couple, forces.moment_size(k)) and (not acts or abs(offset) > FAR * _size(pos, k)):
         couples.append(Couple(f"M_{{{name}}}", at, couple, turning))
         offset = 0.0
-    return Shown(f"F̅_{{{name}}}", at + u * offset, f if acts else 0j, step, forces.arms[f"h{name}"]), couples
+    on = () if max(abs(off), abs(offset)) > 1e-6 * _size(pos, k) else (pos.points[foot],)
+    return Shown(f"F̅_{{{name}}}", at + u * offset, f if acts else 0j, step, forces.arms[f"h{name}"], on), couples
 
 
 def _size(pos: Positions, k: int) -> float:
@@ -223,7 +230,7 @@ def on_crank(project: Project, k: int) -> list[Shown]:
     from_frame = pair_index(c.link, project.mechanism.frame)
     step = forces.reactions[f"F{from_frame}"]
     shown = [shown_load(forces, load, centre, k) for load in forces.loads[c.link]]
-    return acting([*shown, Shown(f"F̅_{{{from_frame}}}", complex(centre.at(k)), complex(step.at(k)), step, step)],
+    return acting([*shown, Shown(f"F̅_{{{from_frame}}}", complex(centre.at(k)), complex(step.at(k)), step, step, (centre,))],
                   forces.force_size(k))
 
 
@@ -244,7 +251,7 @@ def on_lever(project: Project, k: int) -> list[Shown]:
     lv = project.study.lever
     balanced = None if project.driver is not None else lv.hung[-1]
     return acting((Shown(f"F̅_{{{flat(balancing_sign(project))}}}" if h is balanced else h.symbol, complex(h.at.at(k)),
-                         complex(h.force.at(k)), h.force, h.arm) for h in lv.hung), project.study.forces.force_size(k))
+                         complex(h.force.at(k)), h.force, h.arm, (h.at,)) for h in lv.hung), project.study.forces.force_size(k))
 
 
 def balancing_sign(project: Project) -> str:

@@ -240,7 +240,8 @@ def draw_forces(s: PlayerStage, shown: Iterable[Shown], share: float = 1.0) -> N
     """Arrows with their tails at the points they act at, a ``share`` of their usual length."""
     for force, arrow in arrows(shown, share):
         tail, u = s.frame(force.at), force.along
-        pen = s.pen(force.step, "vector", f"{force.step.name}n" if force.symbol.endswith("^n") else "")
+        pen = s.pen(force.step, "vector", *force.on, along=force.step,
+                    name=f"{force.step.name}n" if force.symbol.endswith("^n") else "")
         pen.arrow(tail, tail + arrow, "vector")
         pen.label(tail + arrow - 2.0 * u, force.symbol, u + 0.35j * u, 3.5, 2.0)
 
@@ -256,7 +257,7 @@ def draw_arms(s: PlayerStage, about: complex, shown: Sequence[Shown], points: It
             continue
         seen.append(foot)
         same = [arm_sign(other.symbol) for other, f in zip(shown, feet, strict=True) if abs(foot - f) < 0.6]
-        pen = s.pen(force.arm, "construction", f"h{flat(force.symbol)}")
+        pen = s.pen(force.arm, "construction", name=f"h{flat(force.symbol)}")
         if abs(foot - tail) > 0.5:
             pen.ray_line(tail, foot, "thin", 2.0)
         pen.line(centre, foot, "thin")
@@ -306,7 +307,7 @@ def force_plan_drawn(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, 
     _draw_sides(s, sides, inside.centre)
     for seg in extra:
         s.vector(seg.tail, seg.head)
-        s.letters(seg.head, seg.symbol, at=(s.at(seg.tail) + s.at(seg.head)) / 2)
+        s.letters(seg.head, seg.symbol, at=(s.at(seg.tail) + s.at(seg.head)) / 2, on=(seg.tail, seg.head))
     for names in joined({name: frame(z) for name, z in points.items()}, tiny, 0.5):
         s.letters(names[0], ", ".join(sorted(names, key=int)), s.at(names[0]) - inside.centre, 2.5, 0.8)
     if small:
@@ -375,7 +376,7 @@ def _draw_sides(s: PlayerStage, sides: Sequence[tuple[str, Step, Step, bool]], c
             continue
         s.vector(tail, head, size=size)
         middle, n = (a + b) / 2, 1j * (b - a)
-        s.letters(head, sign, -n if (np.conj(n) * (middle - centre)).real < 0 else n, at=middle)
+        s.letters(head, sign, -n if (np.conj(n) * (middle - centre)).real < 0 else n, at=middle, on=(tail, head))
 
 
 def newtons(force: float) -> str:
@@ -472,7 +473,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     turned = stage(canvas, lv.velocities.plan, k, replace(frame, turn=pi / 2))
     vectors = turned_vectors(lv)
     for seg in vectors:
-        turned.pen(seg.head, "vector", f"{seg.tail.name}–{seg.head.name}").line(turned.at(seg.tail), turned.at(seg.head), "axis")
+        turned.pen(seg.head, "vector", seg.tail, seg.head).line(turned.at(seg.tail), turned.at(seg.head), "axis")
     s = stage(canvas, lv.plan, k, frame)
     s.dot("p", 0.9)
     s.letters("p", "p", gap=1.2)

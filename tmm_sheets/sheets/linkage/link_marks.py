@@ -170,9 +170,11 @@ def number_links(s: PlayerStage, pos: Positions, only: Collection[str] | None = 
         if shape.bar:
             names = along_bar(s, pos, shape)
             a, b = s.at(pos.points[names[0]]), s.at(pos.points[names[-1]])
-            s.letters(link, shape.link, 1j * (b - a), 5.0, 1.4, a + (share or (0.62 if len(names) > 2 else 0.5)) * (b - a))
+            at = a + (share or (0.62 if len(names) > 2 else 0.5)) * (b - a)
+            s.letters(link, shape.link, 1j * (b - a), 5.0, 1.4, at, on=[pos.points[names[0]], pos.points[names[-1]]])
         elif shape.block is not None:
-            s.letters(link, shape.link, complex(s.value(link)), 5.0, 6.0, s.at(pos.points[shape.block]))
+            block = pos.points[shape.block]
+            s.letters(link, shape.link, complex(s.value(link)), 5.0, 6.0, s.at(block), on=[block], along=link)
 
 
 def clear_of_crank(s: PlayerStage, pos: Positions) -> complex:
@@ -340,7 +342,7 @@ def _draw_bar(s: PlayerStage, pos: Positions, shape: Shape, hinges: list[complex
     if style == "main":
         _corners(s, pos, shape)
     for line in outlines(s, pos, shape):
-        pen = s.pen(pos.directions[shape.link], "link", f"{line[0]}–{line[-1]}")
+        pen = s.pen(pos.directions[shape.link], "link", *(pos.points[name] for name in line))
         points = [s.at(pos.points[name]) for name in (line if style == "main" else (line[0], line[-1]))]
         symbols.bar(pen, points, hinges, style)
         for end in (end for end in ends if (end.arm or line) == line and (end.arm or line not in shape.arms)):
@@ -349,7 +351,9 @@ def _draw_bar(s: PlayerStage, pos: Positions, shape: Shape, hinges: list[complex
             gap = symbols.HINGE if any(abs(nearest - hinge) < symbols.HINGE for hinge in hinges) else 0.0
             # Its last point keeps its place beside the first that is named.
             base = (end.arm or line)[0] if end.arm or not shape.bar else shape.bar[0]
-            pen = s.pen(pos.directions[shape.link], "symbol", f"{base}–{next(name for name in line if name != base)}")
+            on = [pos.points[name] for name in (base, *(name for name in line if name != base))]
+            pen = s.pen(pos.directions[shape.link], "symbol", *on, along=pos.directions[shape.link],
+                        name=f"{on[0].name}–{on[1].name}")
             pen.line(nearest + gap * (free - nearest) / abs(free - nearest), free, style)
 
 
@@ -370,13 +374,14 @@ def _corners(s: PlayerStage, pos: Positions, shape: Shape) -> None:
             line, v = min(ways, key=lambda way: round(abs(float(np.angle(way[1] / u))), 9))
             if frozenset((arm, line)) not in done:
                 done.add(frozenset((arm, line)))
-                symbols.rigid_corner(s.pen(pos.directions[shape.link], "symbol", f"{end}–{far}"), z, u, v)
+                link = pos.directions[shape.link]
+                symbols.rigid_corner(s.pen(link, "symbol", pos.points[end], along=link, name=f"{end}–{far}"), z, u, v)
 
 
 def _draw_block(s: PlayerStage, pos: Positions, shape: Shape, style: str) -> None:
     """A block with its slot, or a ram, and what is fastened to it; small and alone in a bare plan."""
     block = pos.points[str(shape.block)]
-    pen = s.pen(block, "symbol")
+    pen = s.pen(block, "symbol", block, along=pos.directions[shape.link])
     if shape.slot is not None:
         _ram(pen, s, pos, shape, style)
         half = RAM
@@ -444,7 +449,8 @@ def _arms(s: PlayerStage, pos: Positions, shape: Shape, half: float) -> None:
         way = s.at(pos.points[p.name]) - z
         along = (way * np.conj(u)).real
         if p.link == shape.link and abs(way - along * u) < 1e-6 and abs(along) > half:
-            s.pen(pos.points[p.name], "link", f"{shape.block}–{p.name}").line(z + np.sign(along) * half * u, z + way, "main")
+            pen = s.pen(pos.points[p.name], "link", pos.points[str(shape.block)], pos.points[p.name])
+            pen.line(z + np.sign(along) * half * u, z + way, "main")
 
 
 def _base_direction(pos: Positions, name: str) -> complex:
@@ -468,7 +474,7 @@ def _ram(canvas: Canvas, s: PlayerStage, pos: Positions, shape: Shape, style: st
         line(z - half * u, z + half * u, style)
         line(z, z + reach * v, style)
         return
-    walls = s.pen(pos.points[str(shape.block)], "symbol", f"{shape.block}–{g.outer[0]}")
+    walls = s.pen(pos.points[str(shape.block)], "symbol", pos.points[str(shape.block)], pos.points[g.outer[0]])
     for side in (1, -1):
         walls.line(z + side * wall * u + thick * v, z + side * wall * u + reach * v, style)
         line(z + side * wall * u + thick * v, z + side * half * u + thick * v, style)

@@ -20,8 +20,7 @@ from tmm_sheets.construction.step import Step, symbol
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken, letter
 from tmm_sheets.numbers import clean, is_zero
-from tmm_sheets.sheets.border_solver import UNDER
-from tmm_sheets.sheets.border_solver import Form as Needed
+from tmm_sheets.sheets.border_solver import UNDER, Form as Needed
 from tmm_sheets.sheets.components.listed import Form, Formulas
 from tmm_sheets.sheets.linkage.kinetic_frames import BAR, arm_sign, balancing_sign, flat, on_lever
 from tmm_sheets.sheets.linkage.link_marks import indexed

@@ -45,7 +45,7 @@ def figure(project: Project, canvas: Canvas, box: Box) -> None:
     frame = fit_frame(project, canvas, "synthesis", "μ_l", tr("m/mm"), points, [0j] * len(points), box.inset(6.0, 18.0, 6.0, 32.0))
     canvas.title(box, tr("Geneva cross and crank with its locking disc"), str(frame.scale))
     s, mm = stage(canvas, plan, 0, frame), frame.scale.mm
-    pen = s.pen("B", "link", "cross")
+    pen = s.pen("B", "link", name="cross")
     centre, width, bottom = frame(c), float(mm(roller)), float(mm(x["l_BC"] - x["h"] + roller))
     outer, lock, apart, first = (float(mm(x[name])) for name in ("l_BC", "r_f", "l_AC", "l_AB"))
     slots = [phase(b - c) + 2 * pi * k / z for k in range(z)]
@@ -62,9 +62,9 @@ def figure(project: Project, canvas: Canvas, box: Box) -> None:
         pen.arc(centre, outer, angle + mouth, middle - horn, "main")
         pen.arc(centre, outer, middle + horn, angle + 2 * pi / z - mouth, "main")
         pen.arc(centre + rect(apart, middle), lock, middle + pi - turn, middle + pi + turn, "main")
-    _crank(s.pen("A", "link", "crank"), (frame(0j), frame(b)), lock, pi / 2 - pi / z, min(0.35 * lock, 0.7 * (apart - outer)))
-    s.pen("B", "link", "roller").circle(frame(b), width, "main")
-    s.pen("A", "construction", "way of the pin").circle(frame(0j), first, "thin")
+    _crank(s.pen("A", "link", name="crank"), (frame(0j), frame(b)), lock, pi / 2 - pi / z, min(0.35 * lock, 0.7 * (apart - outer)))
+    s.pen("B", "link", name="roller").circle(frame(b), width, "main")
+    s.pen("A", "construction", name="way of the pin").circle(frame(0j), first, "thin")
     for name in "AC":
         symbols.hinge(s.pen(name, "symbol"), s.at(name), "main", 1.6)
         s.letters(name, found.called(name), -1 - 0.8j if name == "A" else 1 - 0.8j, gap=2.4)
@@ -144,11 +144,11 @@ def _quick_return(project: Project, canvas: Canvas, box: Box) -> None:
     canvas.text(complex(box.x0, box.y0 + 1.5), str(frame.scale), 3.5)
     right = stage(canvas, found.plan, 0, frame)
     left = stage(canvas, found.plan, 0, replace(frame, turn=pi, mirror=True))
-    right.pen("A", "construction", "B′–B″").circle(frame(a), frame.scale.mm(crank), "thin")
+    right.pen("A", "construction", name="B′–B″").circle(frame(a), frame.scale.mm(crank), "thin")
     right.pen("C", "axis").line(frame(c) - 6j, frame(complex(0, max(d.imag, crank))) + 4j, "centre")
     for s, prime in ((right, "′"), (left, "″")):
         for link in ("CD", "AB"):
-            symbols.bar(s.pen(link[1], "link", f"{link[0]}–{link[1]}{prime}"), map(s.at, link), map(s.at, "ABCD"), "main", 1.0)
+            symbols.bar(s.pen(link[1], "link", name=f"{link[0]}–{link[1]}{prime}"), map(s.at, link), map(s.at, "ABCD"), "main", 1.0)
         for name, away in (("B", s.at("B") - s.at("A")), ("D", 1j)):
             _hinge(s, name, found.called(name) + prime, away, 1.4)
         u, v = (2.5 * (s.at(end) - s.at("B")) / abs(s.at(end) - s.at("B")) for end in "CA")  # a right angle
@@ -178,12 +178,12 @@ def _engine(project: Project, canvas: Canvas, box: Box) -> None:
     frame = _frame(project, canvas, box, [*points, *(crank * u for u in (1, -1, 1j, -1j))], (10, -10, 9j, -9j))
     canvas.text(complex(box.x0, box.y1 - 5.0), str(frame.scale), 3.5)
     s = stage(canvas, found.plan, 0, replace(frame, turn=float(np.angle(turn))))
-    s.pen("A", "construction", "B′–B″").circle(frame(0j), frame.scale.mm(crank), "thin")
+    s.pen("A", "construction", name="B′–B″").circle(frame(0j), frame.scale.mm(crank), "thin")
     axis = turn * 1j
     s.pen("AC", "axis").line(s.at("B″") - 4 * axis, s.at("C′") + 9 * axis, "centre")
     for prime in "′″":
         for link, hinges in ((("A", f"B{prime}"), (*pins, "A")), ((f"B{prime}", f"C{prime}"), pins)):
-            symbols.bar(s.pen(link[1], "link", "–".join(link)), map(s.at, link), map(s.at, hinges), "main", 1.0)
+            symbols.bar(s.pen(link[1], "link", *link), map(s.at, link), map(s.at, hinges), "main", 1.0)
         symbols.block(s.pen(f"C{prime}", "symbol"), s.at(f"C{prime}"), axis, "main", (7.0, 4.2))
         for name in (f"B{prime}", f"C{prime}"):
             _hinge(s, name, found.called(name), axis * -1j, 2.8)
