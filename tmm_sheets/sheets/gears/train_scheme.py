@@ -65,10 +65,7 @@ def draw_scheme(train: Train, canvas: Canvas, box: Box, title: str) -> None:
     canvas.of = train.velocities.name
     views = TrainScheme(train)
     views.place(canvas, box, f"{train.data.part}-scheme", title)
-    with canvas.as_role("symbol"):
-        views.axial()
-        views.end_views()
-    views.velocities()
+    views.draw()
 
 
 def at_equal_angles(train: Train, stage: tuple[Mesh, ...]) -> int:
