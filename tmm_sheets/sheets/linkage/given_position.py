@@ -71,7 +71,7 @@ def values(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
 def values_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the tables can do with, mm."""
     count, heads = _extent(project)
-    return [(width, heads + row * count) for width, row in ((176.0, 7.0), (160.0, 6.4), (150.0, 5.6), (140.0, 4.6))]
+    return [(width, heads + row * count) for row in (7.0, 6.4, 5.6, 4.6) for width in (176.0, 140.0)]
 
 
 def _points(project: Project) -> Rows:
