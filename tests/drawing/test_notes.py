@@ -67,3 +67,21 @@ def test_a_remark_stands_between_no_plan_and_its_caption_where_there_is_another_
         canvas.text(complex(x + 60, low + 2), "Position 1", 3.5, "centre")
     _, at = placed(canvas)
     assert at.imag < low or at.imag > low + 60
+
+
+@pytest.mark.parametrize("open_above", [True, False], ids=["room above", "no other room"])
+def test_a_remark_is_a_column_between_two_plans_only_where_there_is_no_room_for_lines(open_above):
+    canvas, box = Canvas(), Box(10.0, 8.0, 390.0, 200.0)
+    canvas.begin(box, "", "velocity plans")
+    canvas.note(box, "Less than 1 mm, about nothing: five vectors (positions 3, 6)")
+    for x in (10.0, 226.0):
+        canvas.begin(Box(x, 8.0, x + 164.0, 150.0), "Velocity plan", "velocity plans")
+        for y in range(10, 150, 4):
+            canvas.line(complex(x, y), complex(x + 164, y), "vector")
+    if not open_above:
+        canvas.begin(Box(0.0, 152.0, 400.0, 300.0), "", "others")
+        for y in range(152, 300, 4):
+            canvas.line(complex(0, y), complex(400, y), "vector")
+    crowded, at = placed(canvas)
+    assert crowded == []
+    assert (at.imag > 146) is open_above

@@ -333,6 +333,8 @@ LEADING = 1.6
 """Distance of the lines of a note, in heights of its capitals."""
 LINES = (1, 2, 3, 4, 5)
 """Numbers of lines a note may have, the most welcome first."""
+COLUMN = 2.0
+"""Width of a note, in heights, below which it is no lines of text but a column: rather than that it stands elsewhere."""
 NOTE_CLEARANCE_MM, APART = 1.5, 6.0
 """Margins kept above and below a note, and at its sides, where other lettering would be read on as one line, mm."""
 STEP = 1.0
@@ -340,7 +342,7 @@ STEP = 1.0
 OUTSIDE = 4.0
 """What a millimetre of distance from the view's ink costs, in millimetres from its lower edge."""
 FAR = 250.0
-"""Cost from which on a place is too far from the view to keep clear of its pictures."""
+"""Cost from which on a place is too far from the view, or too narrow, to keep clear of its pictures."""
 TITLE, BESIDE_TITLE = 17.0, 40.0
 """Height of a title with its scale factor, mm, and what it costs to stand beside it: that would be read as part of it."""
 
@@ -388,7 +390,6 @@ def _choice(ink: InkIndex, region: Box, own: Box, note: PlacedNote, height: floa
     laid = [letter(line, height) for line in lines]
     w = max(line.width for line in laid) + 0.15 * height
     h = (len(laid) - 1) * LEADING * height + laid[0].ascent + laid[-1].descent
-    box = note.box
     left = np.arange(region.x0 + NOTE_CLEARANCE_MM, region.x1 - w - NOTE_CLEARANCE_MM, STEP)
     below = np.arange(region.y0 + NOTE_CLEARANCE_MM, region.y1 - h - NOTE_CLEARANCE_MM, STEP)
     if not left.size or not below.size:
@@ -404,8 +405,8 @@ def _choice(ink: InkIndex, region: Box, own: Box, note: PlacedNote, height: floa
     x, y = left[i], below[j]
     outside = np.maximum.reduce([own.x0 - (x + w), own.y0 - (y + h), x - own.x1, y - own.y1, np.zeros(x.size)])
     cost = OUTSIDE * outside + np.abs(y - own.y0) + 0.2 * np.abs(x + w / 2 - own.centre.real)
-    cost += BESIDE_TITLE * (y + h > box.y1 - TITLE)
-    cost += height * LINES.index(count)
+    cost += BESIDE_TITLE * (y + h > note.box.y1 - TITLE)
+    cost += height * LINES.index(count) + FAR * (w < COLUMN * h)
     best = int(np.argmin(cost))
     return float(cost[best]), complex(x[best], y[best]), lines
 
