@@ -5,6 +5,7 @@ import sys
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 from math import log2, pi
+from pathlib import Path
 from time import sleep
 
 import numpy as np
@@ -242,6 +243,11 @@ def test_the_plain_writer_draws_the_same(tmp_path):
             assert same.size, (alike, row)
             left[same[0]] = False
     assert (tmp_path / "sheet1.pdf").read_bytes().startswith(b"%PDF")
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="tells its memory on Linux alone")
+def test_a_process_tells_its_memory():
+    assert 1_000 < int(costs.timed("import sys\n" + whole.PEAK, []).done.stderr) < 1_000_000
 
 
 @pytest.mark.trial

@@ -25,8 +25,8 @@ ROUNDS = 7
 PLAIN = str(Path(__file__).with_name("plain.py"))
 PEAK = """
 try:
-    words = open"/proc/self/status".read().split()
-    print(words[words.index"VmHWM:" + 1], file=sys.stderr)
+    words = open("/proc/self/status").read().split()
+    print(words[words.index("VmHWM:") + 1], file=sys.stderr)
 except OSError:
     print("nan", file=sys.stderr)
 """
