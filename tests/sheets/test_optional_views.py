@@ -18,7 +18,7 @@ from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.drawing.marks import Polyline
 from tmm_sheets.numbers import number
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import optional_views
+from tmm_sheets.sheets import composing, composition, optional_views
 from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.composing import sheet_code
 from tmm_sheets.sheets.gears import train, train_scheme
@@ -249,7 +249,17 @@ def test_what_is_offered_is_drawn_where_there_is_room():
 def test_equations_without_room_under_their_figures_stand_apart(name, apart):
     sheet = composed(Project(read(name)), 1)
     assert any(part.draw == "kinetics.moments" for part in sheet.parts) == apart
-    assert not any(group.text == tr("in the note") for group in sheet.groups)
+    assert not any("в записке" in group.text for group in sheet.groups)
+
+
+def test_where_equations_have_no_room_and_no_view_it_is_said_where_they_are_read(monkeypatch):
+    """In an arrangement of one's own, say: they were left out without a word."""
+    planned = composition.arranged
+    monkeypatch.setattr(composition, "arranged", lambda project, n: replace(planned(project, n), offers=()))
+    for name, times in (("tests/projects/planer.toml", 1), ("sixbar/8:3", 0)):
+        _, canvas, _ = composing.viewed(Project(read(name)), 1)
+        assert [note.text for note in canvas.notes].count("Уравнения моментов: в записке") == times
+        assert bool(canvas.owed) == bool(times)
 
 
 def test_a_point_k_has_its_letter_beside_the_end_of_a_coriolis_segment():

@@ -180,7 +180,7 @@ class Canvas:
     numbers : those at axes, which make way for lines when all are drawn
     inked : cells of ink by part, cached while views are added: earlier marks do not change
     corners : dense corners by the number of plans placed, cached likewise
-    owed : equations that found no room under their figures
+    owed : equations that found no room under their figures, and the places of these
     """
 
     marks: list[Mark] = field(default_factory=list)
@@ -200,7 +200,7 @@ class Canvas:
     numbers: list[AxisNumber] = field(default_factory=list)
     inked: dict[Any, npt.NDArray[np.bool_]] = field(default_factory=dict)
     corners: dict[int, list[Any]] = field(default_factory=dict)
-    owed: list[str] = field(default_factory=list)
+    owed: dict[str, Box] = field(default_factory=dict)
 
     def begin(self, box: Box, title: str = "", draw: str = "") -> None:
         """Begin a view, or without ``draw`` a part of the current one with a box of its own."""

@@ -202,6 +202,8 @@ def viewed(project: Project, n: int) -> tuple[Arrangement, Canvas, dict[str, str
     lower_titles(canvas)
     if plan.offers:
         function("optional_views.draw")(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, composition.DESIGNATION))
+    if canvas.owed:
+        function("moments.settle")(canvas)
     return plan, canvas, fields
 
 

@@ -111,7 +111,7 @@ def draw(canvas: Canvas, box: Box, under: Box | None, texts: Sequence[list[str]]
         return
     place = under._replace(y1=box.y0 - UNDER)
     form, said = next((found for found in _forms(texts, [place.width - EDGES]) if found[0].fits(place)), (None, list[str]()))
-    canvas.owed += [line for line in texts[0] if line not in said]
+    canvas.owed |= {line: box for line in texts[0] if line not in said}
     if form is not None:
         canvas.begin(place, tr(TITLES[of]))
         canvas.of = of
@@ -126,14 +126,19 @@ def _forms(texts: Sequence[list[str]], widths: Iterable[float]) -> Iterator[tupl
 
 
 def _apart(canvas: Canvas) -> Iterator[Form]:
-    """Forms of the equations that had no room under their figures, then of where they are read; none where all stand there."""
+    """Forms of the equations that had no room under their figures; none where all stand there."""
     least = letter(tr(TITLES["moments"]), 5.0).width
-    for text in [canvas.owed, [tr("in the note")]] if canvas.owed else []:
-        yield from (form._replace(head=HEAD, least=least) for form, _ in _forms([text], WIDTHS))
+    yield from (form._replace(head=HEAD, least=least) for form, _ in _forms([[*canvas.owed]] if canvas.owed else [], WIDTHS))
 
 
 owed = Formulas(TITLES["moments"], "moments", lambda project, canvas: _apart(canvas))
 """The equations that had no room under their figures."""
+
+
+def settle(canvas: Canvas) -> None:
+    """Say at the first figure without its equations where they are read, if the sheet has no room or no view for them."""
+    if all(part.draw != "kinetics.moments" for part in canvas.parts):
+        canvas.note(next(iter(canvas.owed.values())), tr("{equations}: in the note").format(equations=tr(TITLES["moments"])))
 
 
 def group_equations(project: Project, g: StructuralGroup, guides: bool = False) -> Iterator[str]:
