@@ -7,8 +7,10 @@ from hypothesis import given, strategies as st
 from tests.methods.linkage import truth
 from tests.methods.linkage.mechanisms import mechanisms, value
 from tests.methods.settings import every_kind, tried
-from tmm_sheets.methods.linkage.motion import acceleration_plan, velocity_plan
+from tmm_sheets.catalogue import read
+from tmm_sheets.methods.linkage.motion import RIGID_ACCELERATION, acceleration_plan, velocity_plan
 from tmm_sheets.methods.linkage.positions import position_plan
+from tmm_sheets.project import Project
 
 OMEGA = -2 * np.pi * 1.2
 NAMES = ("B", "D", "S3", "S5")
@@ -99,3 +101,17 @@ def test_acceleration_of_the_crank_is_given_or_the_mechanisms_own(shaper, phi, e
 def test_fixed_guides_have_no_coriolis_segment(shaper):
     acc = shaper.study.accelerations
     assert [s.symbol for s in acc.plan.segments if "^к" in s.symbol] == ["a̅_{B3B}^к"]
+
+
+@pytest.mark.parametrize("name", ["tests/projects/planer.toml", "tests/projects/feeder.toml", "sixbar/10:1"])
+def test_points_that_turn_with_their_link_move_as_their_places_do(name):
+    """On turning guides, beside slots that pass their pivots: differences of the positions are the truth, of the fourth order."""
+    m, h = Project(read(name)).mechanism, 1e-3
+    acc = accelerations(m, 0.7 + h * np.arange(-2, 3))
+    assert any(step.rule is RIGID_ACCELERATION for step in acc.plan)
+    size = max(abs(value(a, 2)) for a in acc.points.values())
+    for point, a in acc.points.items():
+        z = acc.positions.points[point].value
+        if np.ndim(z):
+            rate, second = z @ [1, -8, 0, 8, -1] / (12 * h), z @ [-1, 16, -30, 16, -1] / (12 * h * h)
+            assert abs(value(a, 2) - second * m.crank.omega**2 - rate * m.crank.sense * float(m.crank.acceleration)) < 1e-7 * size

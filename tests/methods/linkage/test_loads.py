@@ -12,7 +12,7 @@ import pytest
 from tests.project_files import EVEN, FORCE, SLIDER, merged, project, write
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.linkage.loads import curve_of, distinct
+from tmm_sheets.methods.linkage.loads import curve_of, distinct, swing_done
 
 R, ROD = 0.1, 0.35
 
@@ -101,6 +101,16 @@ def test_clockwise_and_another_beginning():
     below = np.sin(pi / 6 - TURN) < 0
     np.testing.assert_array_equal(f.magnitude(TURN), np.where(below, 0, 500))
     assert f.jumps == pytest.approx((pi / 6, pi * 7 / 6), abs=1e-13)
+
+
+@pytest.mark.parametrize("swing", [0.5, pi, 5.2])
+@pytest.mark.parametrize("sense", [1, -1])
+def test_the_part_of_a_swing_that_is_done(swing, sense):
+    """From its end anywhere, a hair beyond either end, and of more than two thirds of a turn."""
+    done = np.array([-1e-12, 0.0, 0.25, 0.5, 0.9, 1.0, 1.0 + 1e-12])
+    for low in (-3.0, 0.0, 3.0):
+        found = swing_done(np.exp(1j * sense * (low + done * swing)), sense, low, swing)
+        assert found == pytest.approx(np.clip(done, 0, 1), abs=1e-11)
 
 
 def test_sides_of_a_dead_point():
