@@ -64,6 +64,18 @@ def test_second_half_is_the_first_read_backwards(name):
     np.testing.assert_allclose(law.s(X), 1 - law.s(1 - X), rtol=0, atol=1e-15)
 
 
+def test_a_law_that_is_not_even_is_read_backwards_whole():
+    """The return that retraces the rise: its derivatives are those of its own travel, its jumps the others' images."""
+    law = table_law([0, 0.2, 0.2, 0.7, 1], [9, 9, -1, -3, -2])
+    back = law.reverse
+    assert not law.even
+    assert back.jumps == pytest.approx([0.8])
+    for x in (0.15, 0.5, 0.79, 1.0):
+        assert back.s(x) == pytest.approx(1 - law.s(1 - x), abs=1e-15)
+        assert back.s(x) == pytest.approx(integral(back.ds, x, (0.3, 0.8)), abs=5e-14)
+        assert back.ds(x) == pytest.approx(integral(back.dds, x, (0.3, 0.8)), abs=5e-14)
+
+
 def test_tables_of_straight_lines_are_exact():
     linear = table_law([0, 1], [3, -3])
     np.testing.assert_allclose(linear.s(X), LINEAR.s(X), rtol=0, atol=1e-15)
