@@ -43,6 +43,16 @@ def test_circle_crosses_its_axes_in_strokes(radius, pattern):
     assert all(p.radius == radius and p.centre == 1 + 2j for p in pieces)
 
 
+@given(st.floats(0.01, 2000), st.sampled_from(PATTERNS))
+def test_first_and_last_stretch_of_a_closed_line_are_one_long_stroke(length, pattern):
+    pieces = np.array(cut(length, pattern, closed=True))
+    assert pieces[0, 0] == 0
+    assert pieces[-1, 1] == length
+    first, *others, last = (pieces[:, 1] - pieces[:, 0])[::len(pattern) // 2] if len(pieces) > 1 else (length / 2, length / 2)
+    assert first == pytest.approx(last, abs=1e-9)
+    assert others == pytest.approx([first + last] * len(others), abs=1e-9)
+
+
 def test_polyline_keeps_its_corners_and_loses_only_gaps():
     points = np.array([0, 30, 30 + 40j, 90 + 40j])
     parts = list(strokes([Polyline(points, "centre")]))
