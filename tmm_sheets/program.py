@@ -21,8 +21,8 @@ from tmm_sheets import kept
 from tmm_sheets.resources import template
 from tmm_sheets.version import __version__
 
-LIBRARIES = ("numpy", "shapely")
-"""Libraries whose numbers stand on the sheets."""
+LIBRARIES = ("numpy", "shapely", "reportlab", "matplotlib", "ezdxf")
+"""Libraries whose numbers stand on the sheets, and those that write files."""
 SETTLED = 2_000_000_000
 """Age, ns, from which on a file's date tells that it has not changed: a later change has a later one."""
 
@@ -51,30 +51,19 @@ def source_fingerprints() -> tuple[str, str]:
     """Fingerprints of this program's sources and libraries, and of what stands in them."""
     files = list(_files())
     stats = [entry.stat() for entry in files]
-    libraries = [spec.origin for name in LIBRARIES if (spec := find_spec(name)) is not None and spec.origin]
+    libraries = {name: spec.origin for name in LIBRARIES if (spec := find_spec(name)) is not None and spec.origin}
     looked_at = [f"{entry.path} {stat.st_size} {stat.st_mtime_ns}" for entry, stat in zip(files, stats, strict=True)]
-    looked_at += [f"{path} {stat.st_size} {stat.st_mtime_ns}" for path in libraries if (stat := os.stat(path))]
+    looked_at += [f"{path} {stat.st_size} {stat.st_mtime_ns}" for path in libraries.values() if (stat := os.stat(path))]
     name = fingerprint("program", "\n".join((sys.version, *looked_at)))
     if known := kept.taken(kept.read(name), lambda tree: (str(tree[0]), str(tree[1]))):
         return known
-    own = fingerprint(__version__, *(part for entry in files for part in (entry.name, _content(entry.path))))
-    whole = fingerprint(own, sys.version, *(f"{name} {_version_of(name)}" for name in LIBRARIES))
+    own = fingerprint(__version__, *(part for entry in files for part in (entry.name, Path(entry.path).read_bytes())))
+    # Installers write the version into the name of a folder beside the library.
+    versions = (path.name for name, file in libraries.items() for path in sorted(Path(file).parents[1].glob(f"{name}-*")))
+    whole = fingerprint(own, sys.version, *versions)
     if time_ns() - max(stat.st_mtime_ns for stat in stats) > SETTLED:
         kept.write(name, json.dumps([own, whole]).encode())
     return own, whole
-
-
-def _version_of(name: str) -> str:
-    if name in sys.modules:
-        return str(sys.modules[name].__version__)
-    from importlib.metadata import version
-
-    return version(name)
-
-
-def _content(path: str) -> bytes:
-    with open(path, "rb") as file:
-        return file.read()
 
 
 def _files() -> list[os.DirEntry[str]]:

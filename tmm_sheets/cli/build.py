@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tmm_sheets import catalogue, encodings, files, quoting, words
+from tmm_sheets.cli import again
 from tmm_sheets.cli.options import (
     CORRECTED,
     DASK,
@@ -84,7 +85,7 @@ def run_build(
 
     settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": plotter}, "dxf": {"text": text},
                                            "pdf": {"date": files.source_date()}}  # fmt: skip
-    order = Order(**asked, settings=settings, names=title_names())
+    order = Order(**asked, settings=settings)
     single = len(projects) == 1 and not families and not lists
     refuse(
         (not (projects or families or lists), marked("Missing argument 'PROJECT'; or give --all FAMILY, or --list FILE.")),
@@ -100,7 +101,7 @@ def run_build(
     if single:
         build_one(projects[0], order)
     else:
-        _build_many(projects, families, lists, order)
+        _build_many(projects, families, lists, replace(order, names=title_names()))
 
 
 def _build_many(projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], order: Order) -> None:
@@ -111,7 +112,7 @@ def _build_many(projects: tuple[str, ...], families: tuple[str, ...], lists: tup
     names = batch.chosen(projects, families, [_listed(file) for file in lists])
     if not names:
         raise BadInput(tell("no projects to build"), hint=tell("the list is empty"))
-    build_store.check(order.parent)
+    build_store.outlet(order.parent).check()
     start = monotonic()
     done, ended = come_of(batch.on(batch.tasks(names), order), len(names))
     for outcome in sorted(done, key=lambda o: o.project):
@@ -142,6 +143,9 @@ def build_one(project: str, order: Order) -> None:
     from tmm_sheets.output.building import build as build_project
     from tmm_sheets.progress import Stopwatch
 
+    question = again.question(project, asked := {**vars(order), "output": None})
+    if _built_before(question, order):
+        return
     watch = Stopwatch()
     with watch.phase(tell("read")):
         variant = read_variant(project, order.corrected)
@@ -177,15 +181,36 @@ def build_one(project: str, order: Order) -> None:
         shown = paths[0] if len(paths) == 1 else paths[0].parent
         if click.launch(str(shown)):
             warnings += (tell("{path} cannot be opened here: open it yourself").format(path=shown),)
-    unchanged = len(built.paths) - len(built.sizes)
-    if unchanged:
-        warnings += (tell("{n} of {m} files unchanged (--force makes them again)").format(n=unchanged, m=len(built.paths)),)
-    tell_all(variant, warnings)
+    if built.afresh:
+        told = [str(line) for line in variant.warnings], [str(line) for line in warnings]
+        again.keep(question, project, asked, (variant.called, folder_of(variant, None).name, *told, *built.afresh))
+    tell_all(variant.called, (*warnings, *_unchanged(len(built.paths), len(built.sizes))))
     if askers is not None:
         from tmm_sheets import explain as report
 
         click.echo(report.text(built.opened, built.drawings, watch, askers))
-    finish(variant, (), (), built.refused)
+    finish(variant.called, (), (), built.refused)
+
+
+def _built_before(question: str, order: Order) -> bool:
+    """Give files once more that were built so, where none of them is there, or tell that all are; whether that was done."""
+    from tmm_sheets.output import build_store
+
+    if (known := again.found(question)) is None:
+        return False
+    called, folder, doubts, warnings, *afresh = known
+    outlet = order.outlet(order.output or order.parent / folder)
+    if (made := build_store.put_again(outlet, *afresh)) is None:
+        return False
+    tell_all(called, doubts)
+    finish(called, map(outlet.path, afresh[0]), warnings if made else _unchanged(len(afresh[0]), 0))
+    return True
+
+
+def _unchanged(count: int, made: int) -> Iterator[str]:
+    """How many of so many files are as they were, if any."""
+    if count > made:
+        yield tell("{n} of {m} files unchanged (--force makes them again)").format(n=count - made, m=count)
 
 
 def _pictures(opened: Project, order: Order) -> dict[str, bytes]:
@@ -216,7 +241,7 @@ def run_watch(project: str, **asked: Any) -> None:
     click.echo(tell("watching {file}, Ctrl-C ends it").format(file=path), err=True)
 
     def draw(file: str | Path) -> None:
-        build_one(str(file), Order(**asked, names=title_names()))
+        build_one(str(file), Order(**asked))
 
     for _ in files.saved((path, path.parent / title_entries.FILE)):
         try:
@@ -246,7 +271,7 @@ def run_roster(table: Path, task: str, output: Path, **asked: Any) -> None:
 
     students = rosters.read(table, task)
     output = build_store.place(output)
-    build_store.check(output)
+    build_store.outlet(output).check()
     settings: dict[str, dict[str, Any]] = {"pdf": {"date": files.source_date()}}
     order = Order(**asked, output=output, settings=settings, names=title_names())
     works = [batch.Task(s.project, s.folder, s.student, s.group) for s in students]
@@ -316,7 +341,7 @@ def run_defence(project: str, corrected: bool, sheets: tuple[int, ...], output: 
     paths, kept = put(folder, {f"overlay{n}.pdf": render_coloured([(of.overlay, RED)]) for n, of in found.items()}, force)
     for n, of in found.items():
         click.echo("\n".join(of.said(n)))
-    finish(opened.variant, paths, kept, problem)
+    finish(opened.variant.called, paths, kept, problem)
 
 
 @PROJECT
@@ -337,8 +362,8 @@ def run_note(project: str, corrected: bool, formats: tuple[str, ...], output: Pa
     with Progress() as progress:
         written = writing.write(opened, formats, progress.doing)
         paths, kept = put(folder, written.files, force)
-    finish(opened.variant, paths, [*kept, *(tell("left out: {problem}").format(problem=problem) for problem in written.problems),
-                                   *(opened.dead_positions if opened.variant.crank is not None else ())])
+    left_out = (tell("left out: {problem}").format(problem=problem) for problem in written.problems)
+    finish(opened.variant.called, paths, (*kept, *left_out, *(opened.dead_positions if opened.variant.crank is not None else ())))
 
 
 @PROJECT
@@ -354,7 +379,7 @@ def run_page(project: str, corrected: bool, sheets: tuple[int, ...], plan: str, 
     found, problem = living_page(opened, opened.variant.chosen(sheets), plan)
     path = output if output is not None else folder_of(opened.variant, None) / "page.html"
     files.write_all({path: found.encode()})
-    finish(opened.variant, [path], (), problem)
+    finish(opened.variant.called, [path], (), problem)
 
 
 @argument("project", required=False)
@@ -415,4 +440,4 @@ def run_optimise(project: str, corrected: bool, vary: tuple[str, ...], least: st
     click.echo(found)
     made = {path: found.opened.text.encode(), path.with_suffix(".svg"): found.svg.encode()}
     files.write_all(made)
-    finish(opened.project.variant, made)
+    finish(opened.project.variant.called, made)

@@ -9,12 +9,12 @@ import click
 
 from tmm_sheets import files
 from tmm_sheets.box import Box
+from tmm_sheets.cli.again import entered, give, repeatable
 from tmm_sheets.cli.options import (
     CORRECTED,
     NO_CACHE,
     PROJECT,
     SHEETS,
-    TITLE,
     folder_of,
     on_paper,
     open_project,
@@ -59,6 +59,7 @@ if TYPE_CHECKING:
 @NO_CACHE
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the template and the overlays.  [default: out/<project>]")  # fmt: skip
+@repeatable
 def run_compare(
     project: str, corrected: bool, template: bool, everything: bool, measured: Path | None, sheet: int | None,
     image: Path | None, read_numbers: bool, views: Path | None, dxf: Path | None, group: Path | None, marks: Path | None,
@@ -118,13 +119,13 @@ def run_compare(
 
         name = opened.variant.project.name
         made |= {path: page(report, path.suffix.lower(), name, files.seen_from(path, folder)) for path in pages}
-    files.write_all(made)
-    tell_all(opened.variant, report.notes)
-    click.echo(report.text, err=target == "-")
+    give(made)
+    tell_all(opened.variant.called, report.notes)
+    give(report.text, err=target == "-")
     if target == "-":
-        click.echo(report.as_json())
+        give(report.as_json())
     for path in made:
-        click.echo(path, err=target == "-")
+        give(path, err=target == "-")
 
 
 
@@ -163,6 +164,7 @@ def _window(context: click.Context, parameter: click.Parameter, value: str | Non
 @NO_CACHE
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the files.  [default: out/<project>]")  # fmt: skip
+@repeatable
 def run_plot(project: str, corrected: bool, sheets: tuple[int, ...], printer: str | None, preview: bool, dpi: float, ctb: bool,
              dry_run: bool, output: Path | None, **asked: Any) -> None:
     import shlex
@@ -175,7 +177,7 @@ def run_plot(project: str, corrected: bool, sheets: tuple[int, ...], printer: st
             marked("--tile cuts a PDF; a plotter takes a sheet in parts with --window")))
     finished = project.lower().endswith(plotting.FILES)
     as_it_is = plotting.PlotLook(look.plotter, overlap=look.overlap)
-    if finished and (sheets or look != as_it_is or click.get_current_context().meta.get(TITLE)):
+    if finished and (sheets or look != as_it_is or entered()):
         raise click.UsageError(tell("{project} is finished: it can be sent or shown, not changed").format(project=project))
     problem, jobs = None, dict[Path, plotting.Job]()
     with Progress() as progress:
@@ -206,11 +208,11 @@ def run_plot(project: str, corrected: bool, sheets: tuple[int, ...], printer: st
 
             made[folder / "black.ctb"] = dxf.plot_styles()
         if not dry_run:
-            files.write_all(made)
+            give(made)
     for path in dict.fromkeys((*jobs, *made)):
-        click.echo(path)
+        give(path)
         for note in jobs[path].notes if path in jobs else ():
-            click.echo(f"    {note}")
+            give(f"    {note}")
     if printer is not None:
         for path, job in jobs.items():
             sent = shlex.join(plotting.command(job, path, printer))

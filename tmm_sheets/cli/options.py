@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tmm_sheets import files, kept, words
+from tmm_sheets.cli.again import TITLE, entered, give
 from tmm_sheets.localized_cli import argument, option
 from tmm_sheets.words import tell
 
@@ -75,10 +76,6 @@ def _forgo(context: click.Context, parameter: click.Parameter, value: bool) -> N
         kept.forgo()
 
 
-TITLE = "tmm_sheets.title"
-"""Key under which a command's context keeps what its options fill title blocks in with."""
-
-
 def _enter(context: click.Context, parameter: click.Parameter, value: str | None) -> None:
     if value is not None:
         context.meta.setdefault(TITLE, {})[parameter.name] = value
@@ -128,7 +125,7 @@ def read_variant(project: str, corrected: bool, drawn: bool = True) -> Variant:
     from tmm_sheets.output import with_room
 
     variant = with_room(catalogue.read(project, corrected))
-    tell_all(variant, variant.warnings)
+    tell_all(variant.called, variant.warnings)
     return title_names().filled(variant) if drawn else variant
 
 
@@ -145,16 +142,16 @@ def title_names() -> Names:
     """What title blocks are filled in with, by the options of the command that runs and the user's settings."""
     from tmm_sheets.task import title_entries
 
-    return title_entries.given(click.get_current_context().meta.get(TITLE, {}))
+    return title_entries.given(entered())
 
 
-def tell_all(variant: Variant, said: Iterable[object]) -> None:
+def tell_all(called: str, said: Iterable[object]) -> None:
     """Tell what is to be said of a project on standard error, a line each."""
     for line in said:
-        click.echo(f"{variant.called}: {line}", err=True)
+        give(f"{called}: {line}", err=True)
 
 
-def finish(variant: Variant, paths: Iterable[Path], said: Iterable[object] = (), problem: CannotBuild | None = None) -> None:
+def finish(called: str, paths: Iterable[Path], said: Iterable[object] = (), problem: CannotBuild | None = None) -> None:
     """Tell which files were written and what is to be said of the project, then what of it could not be made.
 
     Raises
@@ -163,8 +160,8 @@ def finish(variant: Variant, paths: Iterable[Path], said: Iterable[object] = (),
         the ``problem``, if any.
     """
     for path in paths:
-        click.echo(path)
-    tell_all(variant, said)
+        give(path)
+    tell_all(called, said)
     if problem is not None:
         raise problem
 

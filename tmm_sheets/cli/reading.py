@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from tmm_sheets import catalogue, files, quoting, words
+from tmm_sheets.cli.again import give, repeatable
 from tmm_sheets.cli.options import (
     CORRECTED,
     NO_CACHE,
@@ -39,7 +40,7 @@ def run_check(project: str, corrected: bool, scheme: Path | None) -> None:
     from tmm_sheets.api import Opened
 
     opened = Opened(read_variant(project, corrected))
-    tell_all(opened.project.variant, opened.check())
+    tell_all(opened.project.variant.called, opened.check())
     if scheme is not None:
 
         files.write_all({scheme: opened.scheme.svg.encode()})
@@ -99,7 +100,7 @@ def run_solve(
 
     opened, refused = open_project(project, corrected, drawn=False), dict[str, CannotBuild]()
     found = results.told(opened, parts, phi=phi, positions=positions, refused=refused)
-    tell_all(opened.variant, results.remarks(opened, found))
+    tell_all(opened.variant.called, results.remarks(opened, found))
     if target is None and arrays is None and table is None:
         click.echo(results.listing(result_files.plain_numbers(found)))
     else:
@@ -143,6 +144,7 @@ def run_protocol(project: str, corrected: bool, name: str | None, everything: bo
 @SHEETS
 @option("--json", "target", required=True, metavar="FILE", help="Write to FILE, or to standard output for -.")
 @NO_CACHE
+@repeatable
 def run_record(project: str, corrected: bool, sheets: tuple[int, ...], target: str) -> None:
     from tmm_sheets.record import recording
 
@@ -150,10 +152,10 @@ def run_record(project: str, corrected: bool, sheets: tuple[int, ...], target: s
     found, problem = recording.record(opened, opened.variant.chosen(sheets))
     text = recording.as_json(found)
     if target == "-":
-        click.echo(text)
+        give(text)
     else:
-        files.write_all({Path(target): (text + "\n").encode()})
-    finish(opened.variant, (), (), problem)
+        give({Path(target): (text + "\n").encode()})
+    finish(opened.variant.called, (), (), problem)
 
 
 

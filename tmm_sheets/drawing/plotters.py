@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from tmm_sheets import spelling, toml_file
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.box import Box
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.resources import template
 from tmm_sheets.toml_lines import dotted

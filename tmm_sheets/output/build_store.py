@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import json
 import re
-import zipfile
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -114,14 +113,18 @@ class Archive:
 
     def read(self, name: str) -> bytes | None:
         """Content of a member; None when there is none."""
-        with suppress(Exception), zipfile.ZipFile(self.place) as archive:
+        from zipfile import ZipFile
+
+        with suppress(Exception), ZipFile(self.place) as archive:
             return archive.read(name)
         return None
 
     def _members(self) -> dict[str, bytes] | None:
         """All members; None when one of them cannot be read."""
+        from zipfile import ZipFile
+
         try:
-            with zipfile.ZipFile(self.place) as archive:
+            with ZipFile(self.place) as archive:
                 return {name: archive.read(name) for name in archive.namelist()}
         except FileNotFoundError:
             return {}
@@ -245,11 +248,6 @@ def outlet(place: Path, archive: bool = False) -> Outlet:
     return Archive(place) if archive else Folder(place)
 
 
-def check(place: Path) -> None:
-    """Refuse a place that cannot be written, before any work is done for it."""
-    outlet(place).check()
-
-
 def record_of(outlet: Outlet) -> BuildRecord:
     """The record that stands at a place."""
     return BuildRecord.read(outlet.read(RECORD))
@@ -287,6 +285,24 @@ def put(outlet: Outlet, made: Mapping[str, bytes], force: bool, made_from: str =
         named[new] = data
     keep(outlet, record, named, dict.fromkeys(named, made_from), None)
     return list(named), stays
+
+
+def put_again(outlet: Outlet, made_from: Mapping[str, str], whole: str | None, contents: Mapping[str, bytes]) -> int | None:
+    """Put files of an earlier build where nothing of them is; how many, and None where something else is in their way.
+
+    ``made_from`` and ``whole`` are what the record says of them, other ``contents`` those of files beside them.
+    """
+    outlet.check()
+    outlet.sweep(made_from)
+    record = record_of(outlet)
+    if whole in (None, record.whole) and all(current(outlet, record, name, of) for name, of in made_from.items()):
+        return 0
+    if any(outlet.read(name) is not None for name in made_from):
+        return None
+    made = {name: contents[name] for name in made_from}
+    beside = {name: data for name, data in contents.items() if name not in made and outlet.read(name) in (None, data)}
+    keep(outlet, record, made, made_from, whole, beside)
+    return len(made)
 
 
 def untouched(path: Path) -> bool:

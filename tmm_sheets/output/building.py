@@ -109,7 +109,8 @@ class Built:
     """Files of a project in the order asked for, those of them that were made now with their sizes, and what was drawn.
 
     ``refused`` says which sheets cannot be drawn and why; None when all could. ``warnings`` tell what is not as a sheet should
-    be: views that leave their places, labels without a free place, plans that cannot be drawn.
+    be: views that leave their places, labels without a free place, plans that cannot be drawn. ``afresh`` is there when all files
+    were made now, under the names asked for: what :func:`~tmm_sheets.output.build_store.put_again` makes the same of elsewhere.
     """
 
     paths: tuple[Path, ...]
@@ -118,6 +119,7 @@ class Built:
     opened: Project
     refused: CannotBuild | None = None
     warnings: tuple[str, ...] = ()
+    afresh: tuple[dict[str, str], str | None, dict[str, bytes]] | None = None
 
 
 def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | None = None,
@@ -162,15 +164,18 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     leaves = {n: paged[n][0] if n in paged else [drawing] for n, drawing in drawings.items()}
     made, beside = _rendered(leaves, [target for target in work.due if target in done], order, outlet, watch, say)
     done, by_hand = _settled(done, work, made, outlet)
+    # A file without one of its sheets is not current.
+    made_from = {target.name: work.made_from[target] if failed.isdisjoint(target.sheets) else "" for target in done}
     if made or whole_passed:
-        # A file without one of its sheets is not current.
-        made_from = {target.name: work.made_from[target] if failed.isdisjoint(target.sheets) else "" for target in done}
         with watch.phase(tell("write files")):
             keep(outlet, work.record, made, made_from, work.inputs if whole_passed else None, beside)
     paths = tuple(outlet.path(target.name) for target in done)
     sizes = {outlet.path(name): len(data) for name, data in made.items()}
     larger = [tell("sheet {n}: {what}").format(n=n, what=what) for n, (_, told) in paged.items() for what in told]
-    return Built(paths, sizes, drawings, opened, problem, (*by_hand, *larger, *_warnings(drawn)))
+    whole = work.inputs if len(numbers) == len(variant.sheets) else None
+    afresh = problem is None and not work.stand_in and made.keys() == made_from.keys()
+    return Built(paths, sizes, drawings, opened, problem, (*by_hand, *larger, *_warnings(drawn)),
+                 (made_from, whole, {**made, **beside}) if afresh else None)
 
 
 @dataclass(frozen=True)

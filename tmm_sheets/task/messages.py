@@ -12,13 +12,20 @@ from pydantic_core import ErrorDetails
 
 from tmm_sheets import toml_file
 from tmm_sheets.errors import BadInput
-from tmm_sheets.task.schema import Table
+from tmm_sheets.task.schema import PaperTable, Table, TitleBlockTable
 from tmm_sheets.task.units import Refused, shown
 from tmm_sheets.task.values import meant
 from tmm_sheets.toml_lines import KeyPath, TomlLines
 from tmm_sheets.words import either, marked, tell
 
 T = TypeVar("T", bound=Table)
+
+
+class SettingsTable(Table):
+    """A whole settings file, see :mod:`~.title_entries`."""
+
+    title_block: TitleBlockTable = TitleBlockTable()
+    paper: PaperTable = PaperTable()
 
 
 def read(whole: type[T], path: Path, hint: str = "") -> tuple[T, TomlLines]:

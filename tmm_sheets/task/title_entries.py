@@ -9,19 +9,18 @@ there stands for nobody and goes last, and so it is where a file was copied from
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tmm_sheets import toml_file
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.task import families, messages
-from tmm_sheets.task.letters import title_text
-from tmm_sheets.task.schema import PaperTable, Table, TitleBlockTable
+from tmm_sheets.task import families
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
+    from tmm_sheets.task.schema import PaperTable, Table
     from tmm_sheets.task.variant import Variant
 
 ASKED = ("designation", "institution", "group", "student", "supervisor")
@@ -34,13 +33,6 @@ FILE = "tmm-sheets.toml"
 """Name of a settings file."""
 NOBODY, BLANK = "Кафедра ТММ", "___"
 """What shipped projects say where something is to be filled in: the department, and part of any such text."""
-
-
-class SettingsTable(Table):
-    """A whole settings file."""
-
-    title_block: TitleBlockTable = TitleBlockTable()
-    paper: PaperTable = PaperTable()
 
 
 @dataclass(frozen=True)
@@ -144,6 +136,8 @@ def given(options: Mapping[str, str]) -> Names:
     """
     path, found = user_file(), dict[str, str]()
     for name, text in options.items():
+        from tmm_sheets.task.letters import title_text
+
         try:
             found[name] = title_text(text)
         except ValueError as e:
@@ -159,9 +153,14 @@ def of_file(path: Path) -> dict[str, TitleEntry]:
     BadInput
         with every problem of the file.
     """
+    if not os.path.lexists(path):  # nobody waits for the reader of files that are not there
+        return {}
+    from tmm_sheets import toml_file
+    from tmm_sheets.task import messages
+
     file = str(path)
     try:
-        settings, lines = messages.read(SettingsTable, path)
+        settings, lines = messages.read(messages.SettingsTable, path)
     except toml_file.NoSuchFile:
         return {}
     except BadInput as e:
