@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import marshal
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
-from functools import wraps
 from pathlib import Path
 from typing import Any
 
@@ -22,16 +21,9 @@ from tmm_sheets.output.build_store import Folder
 from tmm_sheets.program import fingerprint, maker
 from tmm_sheets.task import families, title_entries
 
-TITLE, GIVEN = "tmm_sheets.title", "tmm_sheets.given"
-"""Keys under which the context of a command keeps what its options fill title blocks in with, and what it has told and written."""
 ELSEWHERE = frozenset({"measured", "image", "dxf", "group", "marks", "printer", "preview", "archive", "with_note", "views",
                        "show_files", "explain", "force"})  # fmt: skip
 """Options of commands with which more is read, made or begun than that."""
-
-
-def entered() -> dict[str, str]:
-    """What title blocks are filled in with by the options of the command that runs."""
-    return dict(click.get_current_context().meta.get(TITLE, {}))
 
 
 def question(project: str, asked: Mapping[str, Any]) -> str:
@@ -44,7 +36,7 @@ def question(project: str, asked: Mapping[str, Any]) -> str:
     read = {str(path): Folder(Path()).read(str(path)) for path in named if path}
     if any(data is None and os.path.lexists(path) for path, data in read.items()):
         return ""  # the command says why
-    about = (click.get_current_context().info_name, project, sorted(asked.items()), entered(), words.reader(), words.asked(),
+    about = (click.get_current_context().info_name, project, sorted(asked.items()), words.reader(), words.asked(),
              os.environ.get("SOURCE_DATE_EPOCH"), [(path, data and fingerprint(data)) for path, data in read.items()])
     return fingerprint("again", maker(), repr(about))
 
@@ -60,27 +52,3 @@ def keep(answered: str, project: str, asked: Mapping[str, Any], told: Any) -> No
     """Keep an outcome, texts and contents, if it still is one of the same question: somebody may have saved a file meanwhile."""
     if answered and answered == question(project, asked):
         kept.write(answered, marshal.dumps(told))
-
-
-def give(said: object, err: bool = False) -> None:
-    """Tell a line, or write files, all or none: whatever a command gives that is :func:`repeatable`."""
-    files.write_all({Path(path): data for path, data in said.items()}) if isinstance(said, dict) else click.echo(said, err=err)
-    told = {str(path): data for path, data in said.items()} if isinstance(said, dict) else str(said)
-    click.get_current_context().meta.setdefault(GIVEN, []).append((told, err))
-
-
-def repeatable(command: Callable[..., None]) -> Callable[..., None]:
-    """Decorator of a command: what it gave is given again. A file that is there and says something else is left to the command."""
-    @wraps(command)
-    def run(project: str, **asked: Any) -> None:
-        name, here = question(project, asked), Folder(Path())
-        known = found(name) or ()
-        made = (file for said, _ in known if isinstance(said, dict) for file in said.items())
-        if known and all(here.read(path) in (None, data) for path, data in made):
-            for said, err in known:
-                give(said, err)
-        else:
-            command(project=project, **asked)
-            keep(name, project, asked, click.get_current_context().meta.get(GIVEN))
-
-    return run

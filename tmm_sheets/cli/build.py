@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,7 +19,9 @@ from tmm_sheets.cli.options import (
     PROJECT,
     REMAKE,
     SHEETS,
+    TITLE,
     among,
+    entered,
     finish,
     folder_of,
     formats_of,
@@ -140,12 +142,18 @@ def build_one(project: str, order: Order) -> None:
     """Build the sheets of one project and what goes with them, and tell the files and what is to be said of them."""
     from contextlib import nullcontext
 
+    from tmm_sheets.output.build_store import put_again
     from tmm_sheets.output.building import build as build_project
     from tmm_sheets.progress import Stopwatch
 
-    question = again.question(project, asked := {**vars(order), "output": None})
-    if _built_before(question, order):
-        return
+    question = again.question(project, asked := {**vars(order), "output": None, TITLE: entered()})
+    if (known := again.found(question)) is not None:
+        called, folder, doubts, warnings, *afresh = known
+        outlet = order.outlet(order.output or order.parent / folder)
+        if (made := put_again(outlet, *afresh)) is not None:
+            tell_all(called, doubts)
+            finish(called, map(outlet.path, afresh[0]), warnings if made else _unchanged(len(afresh[0]), 0))
+            return
     watch = Stopwatch()
     with watch.phase(tell("read")):
         variant = read_variant(project, order.corrected)
@@ -182,8 +190,8 @@ def build_one(project: str, order: Order) -> None:
         if click.launch(str(shown)):
             warnings += (tell("{path} cannot be opened here: open it yourself").format(path=shown),)
     if built.afresh:
-        told = [str(line) for line in variant.warnings], [str(line) for line in warnings]
-        again.keep(question, project, asked, (variant.called, folder_of(variant, None).name, *told, *built.afresh))
+        again.keep(question, project, asked, (variant.called, folder_of(variant, None).name, [*map(str, variant.warnings)],
+                                              [*map(str, warnings)], *built.afresh))
     tell_all(variant.called, (*warnings, *_unchanged(len(built.paths), len(built.sizes))))
     if askers is not None:
         from tmm_sheets import explain as report
@@ -192,25 +200,9 @@ def build_one(project: str, order: Order) -> None:
     finish(variant.called, (), (), built.refused)
 
 
-def _built_before(question: str, order: Order) -> bool:
-    """Give files once more that were built so, where none of them is there, or tell that all are; whether that was done."""
-    from tmm_sheets.output import build_store
-
-    if (known := again.found(question)) is None:
-        return False
-    called, folder, doubts, warnings, *afresh = known
-    outlet = order.outlet(order.output or order.parent / folder)
-    if (made := build_store.put_again(outlet, *afresh)) is None:
-        return False
-    tell_all(called, doubts)
-    finish(called, map(outlet.path, afresh[0]), warnings if made else _unchanged(len(afresh[0]), 0))
-    return True
-
-
-def _unchanged(count: int, made: int) -> Iterator[str]:
+def _unchanged(count: int, made: int) -> list[str]:
     """How many of so many files are as they were, if any."""
-    if count > made:
-        yield tell("{n} of {m} files unchanged (--force makes them again)").format(n=count - made, m=count)
+    return [tell("{n} of {m} files unchanged (--force makes them again)").format(n=count - made, m=count)] if count > made else []
 
 
 def _pictures(opened: Project, order: Order) -> dict[str, bytes]:

@@ -9,17 +9,19 @@ import click
 
 from tmm_sheets import files
 from tmm_sheets.box import Box
-from tmm_sheets.cli.again import entered, give, repeatable
 from tmm_sheets.cli.options import (
     CORRECTED,
     NO_CACHE,
     PROJECT,
     SHEETS,
+    entered,
     folder_of,
+    give,
     on_paper,
     open_project,
     plotter,
     refuse,
+    repeatable,
     tell_all,
     titled,
 )

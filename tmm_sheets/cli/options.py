@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from tmm_sheets import files, kept, words
-from tmm_sheets.cli.again import TITLE, entered, give
 from tmm_sheets.localized_cli import argument, option
 from tmm_sheets.words import tell
 
@@ -76,6 +76,10 @@ def _forgo(context: click.Context, parameter: click.Parameter, value: bool) -> N
         kept.forgo()
 
 
+TITLE, GIVEN = "tmm_sheets.title", "tmm_sheets.given"
+"""Keys under which the context of a command keeps what its options fill title blocks in with, and what it has told and written."""
+
+
 def _enter(context: click.Context, parameter: click.Parameter, value: str | None) -> None:
     if value is not None:
         context.meta.setdefault(TITLE, {})[parameter.name] = value
@@ -117,6 +121,38 @@ REMAKE = option("--force", is_flag=True, help="Make again also what has not chan
 NO_CACHE = option("--no-cache", is_flag=True, expose_value=False, callback=_forgo,
                   help="Draw every sheet anew, without the drawings kept of earlier times.")  # fmt: skip
 CORRECTED = option("--corrected", is_flag=True, help="With the suggested values instead of suspected misprints.")
+
+
+def entered() -> dict[str, str]:
+    """What title blocks are filled in with by the options of the command that runs."""
+    return dict(click.get_current_context().meta.get(TITLE, {}))
+
+
+def give(said: object, err: bool = False) -> None:
+    """Tell a line, or write files, all or none: whatever a command gives that is :func:`repeatable`."""
+    files.write_all({Path(path): data for path, data in said.items()}) if isinstance(said, dict) else click.echo(said, err=err)
+    told = {str(path): data for path, data in said.items()} if isinstance(said, dict) else str(said)
+    click.get_current_context().meta.setdefault(GIVEN, []).append((told, err))
+
+
+def repeatable(command: Callable[..., None]) -> Callable[..., None]:
+    """Decorator of a command: what it gave is given again, see :mod:`~.again`, unless a file is there that says something else."""
+    @wraps(command)
+    def run(project: str, **asked: Any) -> None:
+        from tmm_sheets.cli import again
+        from tmm_sheets.output.build_store import Folder
+
+        name, here = again.question(project, about := {**asked, TITLE: entered()}), Folder(Path())
+        known = again.found(name) or ()
+        made = (file for said, _ in known if isinstance(said, dict) for file in said.items())
+        if known and all(here.read(path) in (None, data) for path, data in made):
+            for said, err in known:
+                give(said, err)
+        else:
+            command(project=project, **asked)
+            again.keep(name, project, about, click.get_current_context().meta.get(GIVEN))
+
+    return run
 
 
 def read_variant(project: str, corrected: bool, drawn: bool = True) -> Variant:

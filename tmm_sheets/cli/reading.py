@@ -7,7 +7,6 @@ from pathlib import Path
 import click
 
 from tmm_sheets import catalogue, files, quoting, words
-from tmm_sheets.cli.again import give, repeatable
 from tmm_sheets.cli.options import (
     CORRECTED,
     NO_CACHE,
@@ -16,9 +15,11 @@ from tmm_sheets.cli.options import (
     SHEETS,
     among,
     finish,
+    give,
     open_project,
     read_variant,
     refuse,
+    repeatable,
     tell_all,
     title_names,
     titled,

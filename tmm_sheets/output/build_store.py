@@ -299,10 +299,9 @@ def put_again(outlet: Outlet, made_from: Mapping[str, str], whole: str | None, c
         return 0
     if any(outlet.read(name) is not None for name in made_from):
         return None
-    made = {name: contents[name] for name in made_from}
-    beside = {name: data for name, data in contents.items() if name not in made and outlet.read(name) in (None, data)}
-    keep(outlet, record, made, made_from, whole, beside)
-    return len(made)
+    beside = {name: data for name, data in contents.items() if name not in made_from and outlet.read(name) in (None, data)}
+    keep(outlet, record, {name: contents[name] for name in made_from}, made_from, whole, beside)
+    return len(made_from)
 
 
 def untouched(path: Path) -> bool:

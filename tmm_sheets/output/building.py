@@ -172,10 +172,9 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     paths = tuple(outlet.path(target.name) for target in done)
     sizes = {outlet.path(name): len(data) for name, data in made.items()}
     larger = [tell("sheet {n}: {what}").format(n=n, what=what) for n, (_, told) in paged.items() for what in told]
-    whole = work.inputs if len(numbers) == len(variant.sheets) else None
-    afresh = problem is None and not work.stand_in and made.keys() == made_from.keys()
+    afresh = made_from, work.inputs if len(numbers) == len(variant.sheets) else None, {**made, **beside}
     return Built(paths, sizes, drawings, opened, problem, (*by_hand, *larger, *_warnings(drawn)),
-                 (made_from, whole, {**made, **beside}) if afresh else None)
+                 afresh if problem is None and not work.stand_in and made.keys() == made_from.keys() else None)
 
 
 @dataclass(frozen=True)
