@@ -53,14 +53,15 @@ def source_fingerprints() -> tuple[str, str]:
     stats = [entry.stat() for entry in files]
     libraries = {name: spec.origin for name in LIBRARIES if (spec := find_spec(name)) is not None and spec.origin}
     looked_at = [f"{entry.path} {stat.st_size} {stat.st_mtime_ns}" for entry, stat in zip(files, stats, strict=True)]
-    looked_at += [f"{path} {stat.st_size} {stat.st_mtime_ns}" for path in libraries.values() if (stat := os.stat(path))]
+    looked_at += [f"{path} {stat.st_size} {stat.st_mtime_ns}" for file in libraries.values()
+                  for path in (file, Path(file).parents[1]) if (stat := os.stat(path))]
     name = fingerprint("program", "\n".join((sys.version, *looked_at)))
     if known := kept.taken(kept.read(name), lambda tree: (str(tree[0]), str(tree[1]))):
         return known
     own = fingerprint(__version__, *(part for entry in files for part in (entry.name, Path(entry.path).read_bytes())))
-    # Installers write the version into the name of a folder beside the library.
-    versions = (path.name for name, file in libraries.items() for path in sorted(Path(file).parents[1].glob(f"{name}-*")))
-    whole = fingerprint(own, sys.version, *versions)
+    # Installers write the version of a library into the name of a folder beside it.
+    whole = fingerprint(own, sys.version, *(
+        path.name for name, file in libraries.items() for path in sorted(Path(file).parents[1].glob(f"{name}-*"))))
     if time_ns() - max(stat.st_mtime_ns for stat in stats) > SETTLED:
         kept.write(name, json.dumps([own, whole]).encode())
     return own, whole

@@ -36,9 +36,9 @@ def question(project: str, asked: Mapping[str, Any]) -> str:
     read = {str(path): Folder(Path()).read(str(path)) for path in named if path}
     if any(data is None and os.path.lexists(path) for path, data in read.items()):
         return ""  # the command says why
-    about = (click.get_current_context().info_name, project, sorted(asked.items()), words.reader(), words.asked(),
-             os.environ.get("SOURCE_DATE_EPOCH"), [(path, data and fingerprint(data)) for path, data in read.items()])
-    return fingerprint("again", maker(), repr(about))
+    return fingerprint("again", maker(), repr((
+        click.get_current_context().info_name, project, sorted(asked.items()), words.reader(), words.asked(),
+        os.environ.get("SOURCE_DATE_EPOCH"), [(path, data and fingerprint(data)) for path, data in read.items()])))
 
 
 def found(question: str) -> Any:

@@ -38,13 +38,14 @@ from tmm_sheets.cli.options import (
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
 from tmm_sheets.files import MOST_POSITIONS
 from tmm_sheets.localized_cli import argument, option
-from tmm_sheets.progress import Bar, Progress
+from tmm_sheets.output import build_store
+from tmm_sheets.output.building import Order, build
+from tmm_sheets.progress import Bar, Progress, Stopwatch
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.plotters import Plotter
     from tmm_sheets.output.batch import Outcome
-    from tmm_sheets.output.building import Order
     from tmm_sheets.project import Project
 
 
@@ -82,12 +83,8 @@ def run_build(
     projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], dpi: float, plotter: Plotter | None, text: str,
     **asked: Any,
 ) -> None:
-    from tmm_sheets.output.build_store import place
-    from tmm_sheets.output.building import Order
-
-    settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": plotter}, "dxf": {"text": text},
-                                           "pdf": {"date": files.source_date()}}  # fmt: skip
-    order = Order(**asked, settings=settings)
+    order = Order(**asked, settings={"png": {"dpi": dpi}, "hpgl": {"machine": plotter}, "dxf": {"text": text},
+                                     "pdf": {"date": files.source_date()}})  # fmt: skip
     single = len(projects) == 1 and not families and not lists
     refuse(
         (not (projects or families or lists), marked("Missing argument 'PROJECT'; or give --all FAMILY, or --list FILE.")),
@@ -99,7 +96,7 @@ def run_build(
         (not single and order.with_note, marked("--with-note is for one project")),
         (not single and order.explain, marked("--explain is for one project")),
     )
-    order = order if order.output is None else replace(order, output=place(order.output))
+    order = order if order.output is None else replace(order, output=build_store.place(order.output))
     if single:
         build_one(projects[0], order)
     else:
@@ -109,7 +106,7 @@ def run_build(
 def _build_many(projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], order: Order) -> None:
     from time import monotonic
 
-    from tmm_sheets.output import batch, build_store
+    from tmm_sheets.output import batch
 
     names = batch.chosen(projects, families, [_listed(file) for file in lists])
     if not names:
@@ -142,15 +139,11 @@ def build_one(project: str, order: Order) -> None:
     """Build the sheets of one project and what goes with them, and tell the files and what is to be said of them."""
     from contextlib import nullcontext
 
-    from tmm_sheets.output.build_store import put_again
-    from tmm_sheets.output.building import build as build_project
-    from tmm_sheets.progress import Stopwatch
-
     question = again.question(project, asked := {**vars(order), "output": None, TITLE: entered()})
     if (known := again.found(question)) is not None:
         called, folder, doubts, warnings, *afresh = known
         outlet = order.outlet(order.output or order.parent / folder)
-        if (made := put_again(outlet, *afresh)) is not None:
+        if (made := build_store.put_again(outlet, *afresh)) is not None:
             tell_all(called, doubts)
             finish(called, map(outlet.path, afresh[0]), warnings if made else _unchanged(len(afresh[0]), 0))
             return
@@ -170,7 +163,7 @@ def build_one(project: str, order: Order) -> None:
                 words.set_paper(words.of_project(variant.project.language))
                 with watch.phase(tell("pages of the note")):
                     variant = writing.run_on(variant, progress.doing)
-            built = build_project(variant, order, outlet, watch, progress.doing)
+            built = build(variant, order, outlet, watch, progress.doing)
             paths, warnings = built.paths, built.warnings
             if order.with_note:
                 with watch.phase(tell("note")):
@@ -223,7 +216,6 @@ def _pictures(opened: Project, order: Order) -> dict[str, bytes]:
 @formats_of("pdf")
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Folder of the sheets.  [default: out/<project>]")
 def run_watch(project: str, **asked: Any) -> None:
-    from tmm_sheets.output.building import Order
     from tmm_sheets.task import title_entries
 
     if catalogue.is_shipped(project):
@@ -258,14 +250,12 @@ def run_watch(project: str, **asked: Any) -> None:
 @DASK
 @NO_CACHE
 def run_roster(table: Path, task: str, output: Path, **asked: Any) -> None:
-    from tmm_sheets.output import batch, build_store, roster as rosters
-    from tmm_sheets.output.building import Order
+    from tmm_sheets.output import batch, roster as rosters
 
     students = rosters.read(table, task)
     output = build_store.place(output)
     build_store.outlet(output).check()
-    settings: dict[str, dict[str, Any]] = {"pdf": {"date": files.source_date()}}
-    order = Order(**asked, output=output, settings=settings, names=title_names())
+    order = Order(**asked, output=output, settings={"pdf": {"date": files.source_date()}}, names=title_names())
     works = [batch.Task(s.project, s.folder, s.student, s.group) for s in students]
     came, ended = come_of(batch.on(works, order), len(works))
     done = {outcome.folder: outcome for outcome in came}

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 import re
+import zipfile
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -113,18 +114,14 @@ class Archive:
 
     def read(self, name: str) -> bytes | None:
         """Content of a member; None when there is none."""
-        from zipfile import ZipFile
-
-        with suppress(Exception), ZipFile(self.place) as archive:
+        with suppress(Exception), zipfile.ZipFile(self.place) as archive:
             return archive.read(name)
         return None
 
     def _members(self) -> dict[str, bytes] | None:
         """All members; None when one of them cannot be read."""
-        from zipfile import ZipFile
-
         try:
-            with ZipFile(self.place) as archive:
+            with zipfile.ZipFile(self.place) as archive:
                 return {name: archive.read(name) for name in archive.namelist()}
         except FileNotFoundError:
             return {}
