@@ -64,7 +64,7 @@ RULES = {
     "compare.group": ("compare output.build_store task.messages task.schema task.title_entries", "project"),
     "compare.diagnosis": ("compare construction drawing", "project"),
     "compare.diagnosis.hypotheses": ("compare.codes compare.diagnosis construction methods.linkage", ""),
-    "compare.measured": (f"catalogue compare construction drawing sheets {METHODS}", "project"),
+    "compare.measured": (f"catalogue compare construction drawing sheets task.units {METHODS}", "project"),
     "compare.cad": ("backends compare construction drawing sheets", "project"),
     "compare.photo": ("compare drawing sheets", "project"),
     "lab": ("", ""),

@@ -20,13 +20,15 @@ LARGEST = 10_000_000
 """Bytes of the largest table that is read."""
 UNPACKED, COLUMNS, ROWS = 100_000_000, 100, 20_000
 """Bytes of what a workbook has packed, columns and rows that are read of one, at most."""
+WORKBOOKS = b"PK", b"\xd0\xcf\x11\xe0"
+"""How workbooks begin, those of today and the old ones, which nothing here reads."""
 SAVE = marked("save the table as CSV in UTF-8")
 _COMPUTED = re.compile(r"\s*([=@＝＋＠－\t\r]|[+-](?!$))")
 """How a text begins that a program would compute; a sign alone is none."""
 
 
-def text_of(path: Path, hint: str) -> str:
-    """Text of a table; ``hint`` says what was expected.
+def text_of(path: Path, hint: str) -> encodings.DecodedText:
+    """Text of a table, and how it was read; ``hint`` says what was expected.
 
     Raises
     ------
@@ -37,23 +39,28 @@ def text_of(path: Path, hint: str) -> str:
         data = files.content(path, LARGEST)
     except OSError as e:
         raise BadInput(Problem(tell("cannot be read: {why}").format(why=reason_of(e)), str(path), hint=hint)) from None
-    if data[:2] == b"PK":
-        return _of_workbook(data, str(path))
-    return encodings.cleaned(encodings.decoded(data, str(path), SAVE).text)
+    if data.startswith(WORKBOOKS):
+        return encodings.DecodedText(_of_workbook(data, str(path)))
+    text, note = encodings.decoded(data, str(path), SAVE)
+    return encodings.DecodedText(encodings.cleaned(text), note)
+
+
+def separator(text: str, remark: str = "\0") -> str:
+    """What stands between cells: ; or , or a tab, whichever the first row has most of."""
+    head = next((line for line in text.splitlines() if line.strip(' \t;,"') and not line.lstrip(' \t"').startswith(remark)), "")
+    return max(";\t,", key=head.count)
 
 
 def rows(text: str, file: str, remark: str = "\0") -> Iterator[tuple[int, list[str]]]:
     """Rows that say something, with the numbers of their lines; those that begin with ``remark`` say nothing.
-
-    Between cells is ; or , or a tab, whichever the first row has most of.
 
     Raises
     ------
     BadInput
         for what is no CSV.
     """
-    head = next((line for line in text.splitlines() if line.strip(" \t;,") and not line.startswith(remark)), "")
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(";\t,", key=head.count))
+    # Strict: a quote that is left open would hide the rows after it.
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator(text, remark), strict=True)
     try:
         for cells in reader:
             told = [" ".join(cell.split()) for cell in cells]

@@ -116,16 +116,10 @@ class Hand:
             return complex(value[k] if value.ndim else value)
 
         value = e.value
-        if e.is_distance:
-            (tail, k, _), (head, _, g) = e.terms
-            value = abs(at(head, k) - at(tail, k)) * abs(g)
-        elif e.is_size:
-            value = abs(at(*e.terms[0][:2]))
-        elif e.kind == "sense":
-            return float(np.sign(at(*e.terms[0][:2]).real))
-        elif e.kind == "angle" and np.iscomplexobj(e.terms[-1][0].value):
-            tail, head = (0j, *(at(step, k) for step, k, _ in e.terms))[-2:]
-            value = float(np.degrees(np.angle(head - tail)))
+        if e.of is not None and (e.kind == "sense" or np.iscomplexobj(e.terms[-1][0].value)):
+            value = e.of(*[at(step, k) for step, k, _ in reversed(e.terms)][::-1])
+            if e.kind == "sense":
+                return value
         else:
             for step, k, g in e.terms:
                 exact = np.asarray(step.value)
@@ -149,10 +143,11 @@ class Hand:
     def gone_on_with(self, e: Measurable, value: float) -> None:
         """What was computed and written down is what is plotted and computed with."""
         step, k, g = e.terms[0]
-        if step.plan in ("reduction", "moments") or e.is_size or e.id in self.wrong:
+        is_size = step.rule.gives == "force" and not e.signed
+        if step.plan in ("reduction", "moments") or is_size or e.id in self.wrong:
             made = np.array(self.value(step))
             at = (k,) if made.ndim else ()
-            made[at] = made[at] * (value / abs(made[at])) if e.is_size else value / g.real
+            made[at] = made[at] * (value / abs(made[at])) if is_size else value / g.real
             self.drawn[id(step)] = made
 
     def filled(self, chosen: Mapping[str, Measurable] | None = None) -> FilledTable:

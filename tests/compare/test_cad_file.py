@@ -120,6 +120,19 @@ def test_paper_space_with_what_its_viewport_shows(path):
     assert shown == pytest.approx(np.array([200 + 100j, 250 + 100j]))
 
 
+@pytest.mark.parametrize(("twist", "centre", "target"), [(0, (1, 0), (0, 0, 0)), (90, (0, 1), (0, 0, 0)), (0, (0, 0), (1, 0, 0))])
+def test_a_viewport_whose_view_is_turned_or_has_a_target(path, twist, centre, target):
+    """Its centre is told as it is seen, from the target and turned."""
+    doc, msp = drawing(6)
+    msp.add_line((0.9, 0), (1.1, 0))
+    layout = doc.layout("Layout1")
+    port = layout.add_viewport(center=(200, 100), size=(100, 100), view_center_point=centre, view_height=1.0)
+    port.dxf.view_twist_angle, port.dxf.view_target_point = twist, target
+    (shown,) = cad_file.read(saved(doc, path)).spaces[1].strokes
+    along = 10 * np.exp(1j * np.radians(twist))
+    assert shown.points == pytest.approx(np.array([200 + 100j - along, 200 + 100j + along]))
+
+
 def test_hidden_layers_do_not_count(path):
     doc, msp = drawing()
     doc.layers.add("off").off()

@@ -155,8 +155,10 @@ def test_files_of_all_kinds(folder, tmp_path):
     assert "Шесть и семь, план.cdw: such a file is not compared" in report.text
 
 
-@pytest.mark.parametrize("error", [KeyError("layer"), OSError("no such device"), MemoryError(), RecursionError("too deep")])
-def test_a_file_that_breaks_the_program_spoils_no_table(folder, tmp_path, monkeypatch, error):
+@pytest.mark.parametrize(("error", "said"), [
+    (KeyError("layer"), "internal error: KeyError"), (RecursionError("too deep"), "internal error: RecursionError"),
+    (OSError("no such device"), "no such device"), (MemoryError(), "not enough memory")])
+def test_a_file_that_breaks_the_program_spoils_no_table(folder, tmp_path, monkeypatch, error, said):
     """It is told among what was not judged; who looks for the defect sees where it happened."""
     def broken(project, sheet, path):
         if "two" in path.name:
@@ -169,10 +171,11 @@ def test_a_file_that_breaks_the_program_spoils_no_table(folder, tmp_path, monkey
 
     found = {s["student"]: s for s in report().tree["students"]}
     assert [found[n]["mark"] for n in ("Five", "One", "Two")] == [100, 76, None]
-    assert type(error).__name__ in found["Two"]["files"][0]["refused"]
-    monkeypatch.setenv("TMM_SHEETS_TRACEBACK", "1")
-    with pytest.raises(type(error)):
-        report()
+    assert said in found["Two"]["files"][0]["refused"]
+    if "internal" in said:
+        monkeypatch.setenv("TMM_SHEETS_TRACEBACK", "1")
+        with pytest.raises(type(error)):
+            report()
 
 
 def test_the_wrong_student(folder, tmp_path):

@@ -172,7 +172,8 @@ def test_columns(filled, head, text):
 @pytest.mark.parametrize(("data", "text"), [
     (b"", "empty"), (b"\n \n", "empty"), (b"\xef\xbb\xbf# x\n", "no lines"), (b"PK\x03\x04...", "workbook"),
     (b"\0\1\2" * 50, "not a text"),
-    (b"\xd0\xcf\x11\xe0\xa1", "workbook"), ("# проект: lugansk/shaper\n".encode() + HEAD.encode(), "not of press"),
+    (b"\xd0\xcf\x11\xe0\xa1", "workbook"), (b'id;measured\nvelocities/1/pb;"5\nvelocities/2/pb;5\n', "unexpected end of data"),
+    ("# проект: lugansk/shaper\n".encode() + HEAD.encode(), "not of press"),
 ])
 def test_no_table_at_all(filled, data, text):
     assert text in str(problems(filled, data=data)[0])
@@ -199,5 +200,5 @@ def test_many_problems_are_cut_short(filled):
 def test_missing_file(tmp_path, found):
     with pytest.raises(BadInput, match=r"--template writes"):
         read(tmp_path / "none.csv", PRESS, found)
-    with pytest.raises(BadInput, match="folder"):
+    with pytest.raises(BadInput, match="is a directory"):
         read(tmp_path, PRESS, found)

@@ -29,7 +29,6 @@ Marks follow a scheme of the teacher's, what each kind of fault costs, in a TOML
 
 from __future__ import annotations
 
-import os
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -44,10 +43,10 @@ from unicodedata import normalize
 from pydantic import BeforeValidator, Field
 
 from tmm_sheets import files, toml_file
-from tmm_sheets.compare.codes import Remark
+from tmm_sheets.compare.elements import grouped
 from tmm_sheets.compare.findings import FindingRecord, Kind, Report, Story, StoryTable, table_lines
 from tmm_sheets.compare.report_pages import page
-from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.errors import BadInput, Problem, told_of
 from tmm_sheets.numbers import told
 from tmm_sheets.output.build_store import untouched
 from tmm_sheets.task import messages
@@ -335,12 +334,8 @@ def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project], 
             raise BadInput(tell("such a file is not compared"), tell("save it as .dxf, .csv, .jpg, .png or .pdf"))
         kind: Kind = "dxf" if suffix in DRAWINGS else "measured" if suffix in NUMBERS else "image"
         report = judge(kind, project, sheet, path)
-    except (BadInput, CannotBuild) as e:
-        return Judgement(file, {"unjudged": 1}, refused=re.sub(rf"^{re.escape(str(path))}:\s*", "", str(e), flags=re.MULTILINE))
-    except Exception as e:  # a defect that one file shows must not cost all others their rows
-        if os.environ.get("TMM_SHEETS_TRACEBACK"):
-            raise
-        return Judgement(file, {"unjudged": 1}, refused=tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}"))
+    except Exception as e:  # a defect, too, that one file shows must not cost all others their rows
+        return Judgement(file, {"unjudged": 1}, refused=re.sub(rf"^{re.escape(str(path))}:\s*", "", told_of(e), flags=re.MULTILINE))
     faults, mistakes = counted_faults(report)
     return Judgement(file, faults, mistakes, report=report)
 
@@ -425,11 +420,9 @@ def called_kinds() -> tuple[str, ...]:
 
 def _most_made(students: Sequence[Student]) -> list[tuple[str, int]]:
     """Mistakes by how many students made them; sizes, which are everybody's own, do not tell them apart."""
-    made: dict[tuple[object, ...], list[Remark]] = {}
-    for s in students:
-        for key, remark in {m.alike: m.told for f in s.files for m in f.mistakes}.items():
-            made.setdefault(key, []).append(remark)
-    return [(some[0].said(own=len(set(some)) == 1), len(some)) for some in sorted(made.values(), key=len, reverse=True)]
+    every = [m for s in students for m in {m.alike: m for f in s.files for m in f.mistakes}.values()]
+    made = sorted(grouped(every, lambda m: m.alike).values(), key=len, reverse=True)
+    return [(some[0].told.said(own=len({m.told for m in some}) == 1), len(some)) for some in made]
 
 
 def _text(story: Story) -> str:

@@ -115,6 +115,11 @@ class Errors:
         known = self._of(step)
         return np.zeros(1) if known is None else known.error
 
+    def error_at(self, step: Step, k: int) -> float:
+        """Error of a step at a position."""
+        error = self.error(step)
+        return float(error[min(k, len(error) - 1)])
+
     def in_mm(self, step: Step) -> Floats:
         """Error of a drawn step in millimetres of its plan, shape (n,) or (1,)."""
         return self.error(step) / self._mu[id(step)]

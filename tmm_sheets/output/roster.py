@@ -68,7 +68,7 @@ def read(path: Path, task: str = "") -> list[Enrolled]:
         with the problems of the file, :data:`MOST` at most.
     """
     file = str(path)
-    rows = csv_tables.rows(csv_tables.text_of(path, tell("expected a table of students, CSV")), file)
+    rows = csv_tables.rows(csv_tables.text_of(path, tell("expected a table of students, CSV")).text, file)
     first, head = next(rows, (1, []))
     columns = _columns(head, first, file, task)
     found, problems, lines = list[Enrolled](), list[Problem](), dict[tuple[str, str], int]()

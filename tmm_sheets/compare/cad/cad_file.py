@@ -333,16 +333,10 @@ class DxfReader:
         for port in layout.query("VIEWPORT"):
             if port.dxf.get("id", 1) == 1 or not port.dxf.get("status", 1) or port.dxf.layer.lower() in self.hidden:
                 continue
-            height = float(port.dxf.view_height)
-            if not height > 0 or not model.strokes:
-                continue
-            k = float(port.dxf.height) / height
-            turn = k * np.exp(1j * radians(port.dxf.get("view_twist_angle", 0.0)))
-            seen, at = port.dxf.view_center_point, port.dxf.center
-            shift = complex(at.x, at.y) - turn * complex(seen.x, seen.y)
-            half = complex(float(port.dxf.width) / 2, float(port.dxf.height) / 2)
-            low, high = complex(at.x, at.y) - half, complex(at.x, at.y) + half
-            space = _with_viewport(space, model, Placing(turn, shift), low, high)
+            if port.get_scale() > 0 and model.strokes:
+                zero, one = _xy(port.get_transformation_matrix().transform_vertices([(0, 0, 0), (1, 0, 0)]))
+                low, high = _xy(port.clipping_rect())
+                space = _with_viewport(space, model, Placing(complex(one - zero), complex(zero)), low, high)
         return space
 
     def _parts(self, layout: Any) -> Iterator[tuple[DXFEntity, DXFEntity, _EntityLook]]:

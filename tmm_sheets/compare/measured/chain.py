@@ -12,7 +12,6 @@ at once, and none of them follows from any step. The table is read as it was mea
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -93,16 +92,9 @@ def mark(judged: Sequence[JudgedValue], wholes: Sequence[SystematicError], writt
 def _explained(judged: Sequence[JudgedValue], meant: Mapping[str, float]) -> int:
     """How many numbers are in order as they were meant, and were not so; none where not nearly all are."""
     shown = [j for j in judged if j.entry.id in meant and np.isfinite(j.tolerance)
-             and abs(_off(j, j.line.value) - _off(j, meant[j.entry.id])) > 2 * REACH * j.tolerance]
-    good = sum(abs(_off(j, meant[j.entry.id])) <= REACH * j.tolerance < abs(j.deviation) for j in shown)
+             and abs(j.off(j.line.value) - j.off(meant[j.entry.id])) > 2 * REACH * j.tolerance]
+    good = sum(abs(j.off(meant[j.entry.id])) <= REACH * j.tolerance < abs(j.deviation) for j in shown)
     return good if LEAST <= good >= (len(shown) if len(shown) < FEW else NEARLY_ALL * len(shown)) else 0
-
-
-def _off(j: JudgedValue, value: float) -> float:
-    """How far a number is off if it is written so."""
-    if j.entry.kind == "angle":
-        return angle_apart(value, j.exact, j.entry.signed)
-    return (value if j.entry.signed else abs(value)) - j.exact
 
 
 def _whole(kind: Kind, words: str, some: Sequence[JudgedValue], meant: Sequence[float], other: str | Remark = "",
@@ -133,18 +125,14 @@ def _mirrored(judged: Sequence[JudgedValue]) -> Iterator[SystematicError]:
 
 def _numbered(judged: Sequence[JudgedValue], labels: Sequence[str]) -> Iterator[SystematicError]:
     """Positions numbered from another start: the rows of each have the numbers of another, as far on for all."""
-    rows: dict[tuple[str, str, str], dict[str, JudgedValue]] = defaultdict(dict)
-    for j in judged:
-        if j.entry.label in labels:
-            rows[j.entry.plan, j.entry.title, j.entry.quantity][j.entry.label] = j
-    if len({plan for plan, _, _ in rows}) < 2:
-        return
-    for by in range(1, len(labels)):
+    numbered = grouped((j for j in judged if j.entry.label in labels), lambda j: (j.entry.plan, j.entry.title, j.entry.quantity))
+    rows = {row: {j.entry.label: j for j in some} for row, some in numbered.items()}
+    for by in range(1, len(labels)) if len({plan for plan, _, _ in rows}) > 1 else ():
         after = {at: labels[(k + by) % len(labels)] for k, at in enumerate(labels)}  # the position whose numbers its rows have
         before = {now: at for at, now in after.items()}
         meant = [(j, of[before[at]].line.value if before[at] in of else j.exact) for of in rows.values()
                  for at, j in of.items() if before[at] in of or (after[at] in of and abs(
-                     _off(of[after[at]], j.line.value)) <= REACH * of[after[at]].tolerance)]
+                     of[after[at]].off(j.line.value)) <= REACH * of[after[at]].tolerance)]
         yield from _whole("neighbour", "numbering", [j for j, _ in meant], [value for _, value in meant],
                           ROWS(position=Own(labels[0]), other=Own(labels[by])))
 
@@ -153,7 +141,7 @@ def _rescaled(judged: Sequence[JudgedValue]) -> Iterator[SystematicError]:
     """The lengths of a plan to another scale factor than stated: all so many times as long."""
     lengths = (j for j in judged if j.entry.kind == "length" and j.entry.scale and j.line.factor is None)
     for some in grouped(lengths, lambda j: j.entry.scale).values():
-        value, exact, tolerance = np.array([(_off(j, j.line.value) + j.exact, j.exact, j.tolerance) for j in some]).T
+        value, exact, tolerance = np.array([(j.off(j.line.value) + j.exact, j.exact, j.tolerance) for j in some]).T
         long = np.abs(exact) > LONG_ENOUGH * tolerance
         if long.sum() < SCALED:
             continue
@@ -241,14 +229,10 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
     e = line.entry
     ratio = found.scales[e.scale].mu / factor_of(line, found.scales, factors) if e.scale else 1.0
     size = ratio if e.kind == "length" else 1.0
-    if e.scale in found.on_paper:
-        # On diagrams the pencil's millimetres stay what they are, whatever the ordinates mean.
-        error, rows = errors.of_sum(e.terms)
-        rows = [(s, k, g * size) for s, k, g in rows]
-        error /= ratio if e.kind == "result" else 1.0
-    else:
-        error, rows = errors.of_sum((s, k, g * size) for s, k, g in e.terms)
-    rows = [row for row in rows if _matters(*row, error, errors)]
+    error, rows = errors.of_sum(e.terms)
+    # On diagrams the pencil's millimetres stay what they are, whatever the ordinates mean.
+    error *= size if e.scale not in found.on_paper else 1 / ratio if e.kind == "result" else 1.0
+    rows = [(s, k, g * size) for s, k, g in rows if _matters(s, k, g * size, error, errors)]
     exact = e.value * size if e.slope is None else _tilted(e.value, e.slope, found, factors)
     read = e.reading * reading / (ratio if e.kind == "result" else 1.0)
     # A ruler is read no better than its reading is written.
@@ -261,27 +245,21 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
     # What cannot be drawn, and what is so badly conditioned that its error is as large as itself.
     elif not isfinite(tolerance) or tolerance > {"length": max(abs(exact), LONG), "angle": ANY_WAY}.get(e.kind, tolerance):
         tolerance = float("inf")
-    measured = line.value if e.signed or e.kind == "angle" else abs(line.value)
-    deviation = angle_apart(measured, exact, e.signed) if e.kind == "angle" else measured - exact
-    judged = JudgedValue(line, exact, deviation, max(tolerance, EXACT), rows, size=size, reading=own)
-    judged.noted = _noted(judged, measured, tolerance)
+    judged = JudgedValue(line, exact, e.off(line.value, exact), max(tolerance, EXACT), rows, size=size, reading=own)
+    judged.noted = _noted(judged, line.value if e.signed else abs(line.value), tolerance)
     return judged
 
 
 def _matters(step: Step, k: int, g: complex, error: float, errors: Errors) -> bool:
     """False for what a number depends on by nothing but rounding: a thousandth of the step does a millionth of the error."""
-    of_step = errors.error(step)
-    most = max(float(of_step[min(k, len(of_step) - 1)]), 1e-3 * abs(complex(value_at(step, k))))
+    most = max(errors.error_at(step, k), 1e-3 * abs(complex(value_at(step, k))))
     return isfinite(abs(g)) and abs(g) * most > 1e-6 * error
 
 
 def _of_squares(e: Measurable, errors: Errors, reading: float, ratio: float) -> float:
     """Error of the squares of an energy beyond their gradient; ``reading`` in mm, ``ratio`` of the scale factors."""
-    second = 0.0
-    for factor, step, k, per_mm in e.squares:
-        of_step = errors.error(step)
-        second += 2 * factor * (float(of_step[min(k, len(of_step) - 1)]) ** 2 + (per_mm / ratio * reading) ** 2)
-    return second
+    return sum(2 * factor * (errors.error_at(step, k) ** 2 + (per_mm / ratio * reading) ** 2)
+               for factor, step, k, per_mm in e.squares)
 
 
 def _noted(judged: JudgedValue, measured: float, tolerance: float) -> Remark | None:

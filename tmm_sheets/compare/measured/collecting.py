@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from math import degrees, pi
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.compare.elements import grouped
 from tmm_sheets.compare.measured import linkage_items, measurable as units
 from tmm_sheets.compare.measured.measurable import (
     CALCULATED,
@@ -66,13 +67,11 @@ def _graph(found: Measurables, graph: tuple[str, str], quantity: str, step: Step
            called: str = "") -> None:
     """The ordinates of one curve, ``called`` so where its letter is not its name."""
     key, title = graph
-    if key in found.scales:
+    for k, label in enumerate(labels if key in found.scales else ()):
         mu = found.scales[key].mu
-        for k, label in enumerate(labels):
-            ordinate = float(value_at(step, k)) / mu
-            found.add(magnitude(Measurable(f"{key}/{label}/y_{quantity}", key, tr(title), label, f"y_{called or quantity}",
-                                           MILLIMETRES, "length", ordinate, ((step, k, 1 / mu + 0j),), key, 1.0,
-                                           main=graph == OF_MOMENT)))
+        found.add(magnitude(Measurable(
+            f"{key}/{label}/y_{quantity}", key, tr(title), label, f"y_{called or quantity}", MILLIMETRES, "length",
+            float(value_at(step, k)) / mu, ((step, k, 1 / mu + 0j),), key, 1.0, main=graph == OF_MOMENT)))
 
 
 TITLE = marked("Flywheel")
@@ -105,20 +104,18 @@ def flywheel(project: Project, found: Measurables) -> None:
         found.plans.append((plan, key))
         found.on_paper.add(key)
         for step_name, quantity in steps.items():
-            step = plan[step_name]
-            for k in range(len(plan.labels) if np.ndim(step.value) else 1):
-                if quantity.startswith("y_") and k == len(plan.labels) - 1 and len(plan.labels) > 1:
-                    continue  # the position that closes the cycle
-                entry = measured_step(plan, found.scales, k, step, quantity, key)
-                found.add(replace(entry, slope=(INERTIA, ENERGY) if entry.kind == "angle" else None, main=quantity != "y_T2"))
+            step, closes = plan[step_name], quantity.startswith("y_") and len(plan.labels) > 1  # the last position is the first
+            for k in range(len(plan.labels) - closes if np.ndim(step.value) else 1):
+                found.add(measured_step(plan, found.scales, k, step, quantity, key, main=quantity != "y_T2",
+                                        slope=(INERTIA, ENERGY) if step.rule.gives == "angle" else None))
     _between_positions(f, found)
     _results(f, found)
     if "crank-speed" in plans:
         plan = plans["crank-speed"]
         found.plans.append((plan, ENERGY))
         for k, label in enumerate(plan.labels[:-1]):
-            found.add(replace(size(tell("Angular velocity of the driving link"), f"{RESULTS}/{label}/omega_I", label, "ω_I",
-                                   units.ANGULAR_SPEED, k, plan["ω1"], by=plan["ω1"]), main=False))
+            found.add(size(tell("Angular velocity of the driving link"), label, "omega_I", units.ANGULAR_SPEED, k, plan["ω1"],
+                           "ω_I", main=False))
 
 
 def _between_positions(f: Flywheel, found: Measurables) -> None:
@@ -159,22 +156,22 @@ def others(project: Project, found: Measurables) -> None:
             found.plans.append((plan, plan.name))
             found.add(length(plan, found.scales, 0, plan["E"], plan["F"], "EF"))
         elif plan.name in ("dead-positions", "synthesis"):
-            found.plans.append((plan, plan.name))
-            _lengths(plan, found, plan.name)
+            _lengths(plan, found)
             for head in (s for s in plan if s.rule.gives == "point" and np.ndim(s.value) == 0):
                 for tail in dict.fromkeys(a for a in head.args if isinstance(a, Step) and a.name in plan and plan[a.name] is a):
                     if tail.rule.gives == "point" and "₀" not in tail.name:
                         found.add(length(plan, found.scales, 0, tail, head, f"{tail.name}{head.name}"))
 
 
-def _lengths(plan: Plan, found: Measurables, key: str) -> None:
+def _lengths(plan: Plan, found: Measurables) -> None:
     """All lengths and angles of a plan that were measured or drawn as circles; not those taken from numbers."""
+    found.plans.append((plan, plan.name))
     taken = (rules.GIVEN_LENGTH, TAKEN)
     for step in plan:
         if step.rule.gives in ("length", "ordinate", "angle", "inclination") and step.rule not in taken and step.args:
             for k in range(np.size(step.value)):
-                entry = measured_step(plan, found.scales, k, step, key=key)
-                found.add(replace(entry, main=entry.kind == "length" or np.size(step.value) == 1))
+                found.add(measured_step(plan, found.scales, k, step,
+                                        main=step.rule.gives in ("length", "ordinate") or np.size(step.value) == 1))
 
 
 def gear(project: Project, found: Measurables) -> None:
@@ -182,20 +179,16 @@ def gear(project: Project, found: Measurables) -> None:
     pair = project.gear
     if "gear-engagement" in found.scales:
         plan = pair.engagement
-        found.plans.append((plan, "gear-engagement"))
-        _lengths(plan, found, "gear-engagement")
+        _lengths(plan, found)
         for tail, head in (("O1", "O2"), ("N1", "N2"), ("A", "B"), ("A", "Pw"), ("Pw", "B")):
             if tail in plan and head in plan:
                 found.add(length(plan, found.scales, 0, plan[tail], plan[head], tail + head))
     if "gear-sliding" in found.scales:
         _sliding(pair.sliding, found)
     for name, told in pair.results().items():
-        value = told.value
-        if name in GEAR_ANGLES:
-            scalar(found, tell("Gear pair"), name, degrees(value), DEGREES, part="gear", main=name in GEAR_MAIN)
-        else:
-            scalar(found, tell("Gear pair"), name, value, "" if name in GEAR_NUMBERS else MILLIMETRES,
-                   part="gear", main=name in GEAR_MAIN)
+        angle = name in GEAR_ANGLES
+        scalar(found, tell("Gear pair"), name, degrees(told.value) if angle else told.value,
+               DEGREES if angle else "" if name in GEAR_NUMBERS else MILLIMETRES, part="gear", main=name in GEAR_MAIN)
 
 
 def _sliding(plan: Plan, found: Measurables) -> None:
@@ -217,27 +210,28 @@ def _sliding(plan: Plan, found: Measurables) -> None:
 def reducer(project: Project, found: Measurables) -> None:
     """Results of the reducer."""
     results: Mapping[str, Any] = project.reducer.results()
-    for group, unit in (("teeth", ""), ("diameters_w", MILLIMETRES), ("speeds_rpm", TURNS)):
-        for name, told in results[group].items():
-            scalar(found, tell("Reducer"), f"reducer-{name}", told.value, unit)
-    speed_pictures("reducer", project.reducer.plans, found)
-    for name in ("ratio", "ratio_planetary", "ratio_simple", "efficiency", "q"):
-        if name in results:
-            scalar(found, tell("Reducer"), f"reducer-{name}", results[name].value, "")
+    told = [(name, one, unit) for group, unit in (("teeth", ""), ("diameters_w", MILLIMETRES), ("speeds_rpm", TURNS))
+            for name, one in results[group].items()]
+    told += [(name, results[name], "") for name in ("ratio", "ratio_planetary", "ratio_simple", "efficiency", "q")
+             if name in results]
+    _told("reducer", tell("Reducer"), told, project.reducer.plans, found)
 
 
 def train(project: Project, found: Measurables) -> None:
     """Results of the train of gears; tooth numbers and speeds that are given are none."""
     train = project.train
     results: Mapping[str, Any] = train.results()
-    for name, told in results["distances"].items():
-        scalar(found, tell("Train of gears"), f"train-{name}", told.value, MILLIMETRES)
-    for m in train.meshes:
-        scalar(found, tell("Train of gears"), f"train-d{m.central}-{m.planet}", float(train.pitch(m).value), MILLIMETRES)
-    for name, told in results["speeds_rpm"].items():
-        if name.removeprefix("n") not in train.given:
-            scalar(found, tell("Train of gears"), f"train-{name}", told.value, TURNS)
-    speed_pictures("train", train.plans, found)
+    told = [(name, one, MILLIMETRES) for name, one in results["distances"].items()]
+    told += [(f"d{m.central}-{m.planet}", train.pitch(m), MILLIMETRES) for m in train.meshes]
+    told += [(name, one, TURNS) for name, one in results["speeds_rpm"].items() if name.removeprefix("n") not in train.given]
+    _told("train", tell("Train of gears"), told, train.plans, found)
+
+
+def _told(part: str, title: str, results: Sequence[tuple[str, Any, str]], plans: Mapping[str, Plan], found: Measurables) -> None:
+    """Results of a part by name, with their units, and what its pictures of speeds show."""
+    for name, one, unit in results:
+        scalar(found, title, f"{part}-{name}", one.value if isinstance(one.value, int) else float(one.value), unit)
+    speed_pictures(part, plans, found)
 
 
 def cam(project: Project, found: Measurables) -> None:
@@ -252,12 +246,11 @@ def cam(project: Project, found: Measurables) -> None:
         for step in m.plan:
             if step.rule in (CHORD, ORDINATE, ACROSS):
                 key = f"cam-motion-{step.name.partition('_')[0]}"
-                found.add(replace(measured_step(m.plan, found.scales, 0, step, key=key), main=not step.name.startswith("S''")))
+                found.add(measured_step(m.plan, found.scales, 0, step, key=key, main=not step.name.startswith("S''")))
     for part in ("zone", "inversion"):
         plan = getattr(getattr(cam, part, None), "plan", None)
         if plan is not None and plan.name in found.scales:
-            found.plans.append((plan, plan.name))
-            _lengths(plan, found, plan.name)
+            _lengths(plan, found)
     for name, step in cam.results().items():
         if name in ("r0", "e", "s0", "l0", "r_roller", "rho_min"):
             # Read off the drawing where it is drawn; in mm, as the manuals write it.
@@ -291,7 +284,7 @@ def speed_pictures(part: str, plans: Mapping[str, Plan], found: Measurables) -> 
     for paper, step in [(plan, step) for plan, _ in found.plans[-2:] for step in plan if step.rule.gives == "point"]:
         tail = paper.steps.get(step.name.upper() if step.name.islower() else "0")
         if tail is not None and tail is not step and step.name not in ("P", "0"):
-            found.add(replace(length(paper, found.scales, 0, tail, step, tail.name + step.name), main=tail.name == "0"))
+            found.add(length(paper, found.scales, 0, tail, step, tail.name + step.name, tail.name == "0"))
 
 
 def _on_paper(plan: Plan, mu: tuple[float, float], done: dict[Step, Step]) -> Plan:
@@ -357,6 +350,5 @@ def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
             with suppress(CannotBuild):  # its sheet has said why
                 collect(project, found)
     others(project, found)
-    titles = list(dict.fromkeys(e.title for e in found.entries.values()))
-    found.entries = dict(sorted(found.entries.items(), key=lambda pair: titles.index(pair[1].title)))
+    found.entries = {e.id: e for some in grouped(found.entries.values(), lambda e: e.title).values() for e in some}
     return found

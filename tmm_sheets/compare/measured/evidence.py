@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import degrees, isfinite
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -91,6 +91,10 @@ class JudgedValue:
         of_size = self.entry.kind not in ("angle", "sense") and abs(self.exact) > 1e-9
         return 100 * self.deviation / abs(self.exact) if of_size else None
 
+    def off(self, value: float) -> float:
+        """How far the number is off if it is written so."""
+        return self.entry.off(value, self.exact)
+
     def apart(self, x: float) -> float:
         """A difference of two of such numbers: of angles the short way round."""
         return angle_apart(x, 0.0, self.entry.signed) if self.entry.kind == "angle" else x
@@ -103,29 +107,13 @@ class JudgedValue:
     def changed(self, value: Callable[[Step], Any]) -> float:
         """How much the number changes when the steps have other values."""
         e = self.entry
-
-        def moved(step: Step, k: int) -> complex:
-            return complex(value_at(value(step), k) - value_at(step, k))
-
-        if e.is_distance:
-            (tail, k, _), (head, _, g) = e.terms
-            away = complex(value_at(head, k) - value_at(tail, k))
-            change = (abs(away + moved(head, k) - moved(tail, k)) - abs(away)) * abs(g)
-        elif e.is_size:
-            (step, k, _), = e.terms
-            change = abs(complex(value_at(step, k)) + moved(step, k)) - e.value
-        elif e.kind == "sense":
-            (step, k, _), = e.terms
-            change = float(np.sign(float(value_at(step, k)) + moved(step, k).real)) - e.value
-        elif e.kind == "angle" and np.iscomplexobj(e.terms[-1][0].value):
-            foot, tip = (0j, *(complex(value_at(step, k)) for step, k, _ in e.terms))[-2:]
-            from_foot, to_tip = (0j, *(moved(step, k) for step, k, _ in e.terms))[-2:]
+        was, now = ([complex(value_at(of(step), k)) for step, k, _ in e.terms] for of in (lambda step: step, value))
+        if e.of is not None:
             with np.errstate(all="ignore"):
-                change = self.apart(degrees(np.angle((tip + to_tip - foot - from_foot) / (tip - foot))))
-        else:
-            change = sum((np.conj(g) * moved(step, k)).real for step, k, g in e.terms)
-            if len(e.terms) == 1 and not e.signed and e.kind != "angle":
-                change = abs(e.value + change) - e.value
+                return float(self.apart(e.of(*now) - e.of(*was))) * self.size
+        change = sum((np.conj(g) * (b - a)).real for (_, _, g), a, b in zip(e.terms, was, now, strict=True))
+        if len(e.terms) == 1 and not e.signed and e.kind != "angle":
+            change = abs(e.value + change) - e.value
         return float(change) * self.size
 
 

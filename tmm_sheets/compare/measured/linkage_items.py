@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import degrees, prod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,22 +14,23 @@ from tmm_sheets.compare.measured.measurable import (
     ACCELERATION,
     ANGULAR_ACCELERATION,
     ANGULAR_SPEED,
-    DEGREES,
     ENERGY,
     FORCE,
     INERTIA,
     METRES,
     MILLIMETRES,
     MOMENT,
-    PROTRACTOR,
     RESULTS,
     SPEED,
     Measurable,
     Measurables,
+    direction,
     length,
     magnitude,
     measured_step,
+    on_plan,
     plain,
+    result,
     sense,
     size,
     way,
@@ -81,17 +82,15 @@ def _position(plan: Plan, scales: Mapping[str, Scale], k: int) -> Iterator[Measu
         pair = frozenset((tail.name, head.name))
         if pair not in seen and len(pair) == 2 and not any("₀" in name for name in pair):
             seen.add(pair)
-            entry = length(plan, scales, k, tail, head, tail.name + head.name)
             # What is given is only set off; where it goes shows in what is found by crossing lines and arcs.
-            yield replace(entry, main=tail is origin and head.rule not in LAID_OFF and np.ndim(head.value) > 0)
+            yield length(plan, scales, k, tail, head, tail.name + head.name,
+                         tail is origin and head.rule not in LAID_OFF and np.ndim(head.value) > 0)
     crank = next((s for s in plan if s.rule is rules.RAY and np.ndim(s.value)), None)
     for s in plan:
         if s.rule is rules.RAY and np.ndim(s.value):
             u = complex(value_at(s, k))
-            label, name = plan.labels[k], f"∠{s.name}"
-            yield Measurable(f"{plan.name}/{label}/{name}", plan.name, plan.title, label, name, DEGREES, "angle",
-                             degrees(np.angle(u)) % 360, ((s, k, 1j * u * degrees(1)),), reading=degrees(1 / PROTRACTOR), head=s,
-                             main=s is crank)
+            yield on_plan(plan, k, f"∠{s.name}", f"∠{s.name}", "angle", direction(u), ((s, k, 1j * u * degrees(1)),), head=s,
+                          main=s is crank, of=direction)
 
 
 def _position_lines(plan: Plan) -> list[tuple[Step, Step]]:
@@ -111,14 +110,11 @@ def _segments(plan: Plan, scales: Mapping[str, Scale], k: int, between: str = ""
     for s in plan.segments:
         yield length(plan, scales, k, s.tail, s.head, f"{s.tail.name}{between}{s.head.name}")
     for s in plan.segments:
-        direction = way(plan, scales, k, s.tail, s.head, f"{s.tail.name}{between}{s.head.name}")
-        if direction is not None:
-            # Where lines were crossed to find a point it tells which way they went.
-            yield replace(direction, main=LINE_LINE in (s.head.rule, s.tail.rule))
+        yield from way(plan, scales, k, s.tail, s.head, f"{s.tail.name}{between}{s.head.name}")
     for step in plan:
         start = step.args[0] if step.rule is SIMILAR else None
         if isinstance(start, Step) and start.name != plan.pole:
-            yield replace(length(plan, scales, k, start, step, f"{start.name}{step.name}"), main=False)
+            yield length(plan, scales, k, start, step, f"{start.name}{step.name}", False)
 
 
 def _name(vector: Segment) -> str:
@@ -132,36 +128,29 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
     study, force = project.study, project.force_index
     # The tables of a flywheel have all positions of the cycle, also those that are drawn but once.
     indices = list(range(len(study.labels))) if project.variant.flywheel is not None else of_velocities
-    kinds: list[tuple[Any, str, Mapping[str, Step], str, str, str, str, list[int], str]] = [
-        (study.velocities, "V", study.velocities.omega, "ω", SPEED, ANGULAR_SPEED, "velocities", indices,
-         tell("Velocities")),
-        (study.accelerations, "a", study.accelerations.epsilon, "ε", ACCELERATION, ANGULAR_ACCELERATION,
-         "accelerations", [force], tell("Accelerations")),
-    ]
-    for of, letter, turning, greek, unit, angular, key, positions, title in kinds:
-        if key not in found.scales:
-            continue
-        mu = found.scales[key].mu
-        letters = {s.head.name: re.sub(r"[\u0305{}]", "", s.symbol) for s in of.plan.segments
+    for title, of, turnings, letter, greek, unit, angular, positions in (
+            (tell("Velocities"), study.velocities, study.velocities.omega, "V", "ω", SPEED, ANGULAR_SPEED, indices),
+            (tell("Accelerations"), study.accelerations, study.accelerations.epsilon, "a", "ε", ACCELERATION,
+             ANGULAR_ACCELERATION, [force])):
+        plan = of.plan
+        letters = {s.head.name: re.sub(r"[\u0305{}]", "", s.symbol) for s in plan.segments
                    if s.head.rule is motion.CORIOLIS}  # its index is a letter of the language
-        for k in positions:
-            label = study.labels[k]
-            vectors = [(_name(s), s.tail, s.head) for s in of.plan.segments]
-            vectors += [(f"{letter}_{name}", of.pole, step) for name, step in of.points.items() if step is not of.pole]
+        vectors = [(_name(s), s.tail, s.head) for s in plan.segments]
+        vectors += [(f"{letter}_{name}", of.pole, step) for name, step in of.points.items() if step is not of.pole]
+        turning = {f"{greek}{link}": step for link, step in turnings.items() if link != project.mechanism.frame
+                   and (step.rule not in (SAME, motion.SAME_ACCELERATION) or link == project.mechanism.crank.link)}
+        for k in positions if plan.name in found.scales else ():
+            label, mu = study.labels[k], found.scales[plan.name].mu
             for name, tail, head in vectors:
-                drawn = length(of.plan, found.scales, k, tail, head, name)
-                terms = tuple((s, i, g * mu) for s, i, g in drawn.terms)
-                found.add(Measurable(f"{RESULTS}/{label}/{name}", RESULTS, title, label, letters.get(head.name, name), unit,
-                                     "result", drawn.value * mu, terms, key, mu, main=False))
-                found.check(f"{RESULTS}/{label}/{name}", [f"{of.plan.name}/{label}/{tail.name}{head.name}"], float)
-            for link, step in turning.items():
-                alike = step.rule in (SAME, motion.SAME_ACCELERATION) and link != project.mechanism.crank.link
-                if link != project.mechanism.frame and not alike:
-                    name = f"{greek}{link}"
-                    turning_so = size(title, f"{RESULTS}/{label}/{name}", label, name, angular, k, step, by=step)
-                    way_round = sense(title, f"{RESULTS}/{label}/sense-{name}", label, name, k, step)
-                    for entry in filter(None, (turning_so, way_round)):
-                        found.add(replace(entry, main=k == force and link != project.mechanism.crank.link))
+                drawn = length(plan, found.scales, k, tail, head, name)
+                found.add(result(title, label, name, unit, drawn.value * mu, tuple((s, i, g * mu) for s, i, g in drawn.terms),
+                                 letters.get(head.name, name), scale=plan.name, reading=mu, main=False,
+                                 of=lambda a, b: abs(b - a)))
+                found.check(f"{RESULTS}/{label}/{name}", [f"{plan.name}/{label}/{tail.name}{head.name}"], float)
+            for name, step in turning.items():
+                main = k == force and name != f"{greek}{project.mechanism.crank.link}"
+                for entry in (size(title, label, name, angular, k, step, main=main), *sense(title, label, name, k, step, main)):
+                    found.add(entry)
     if project.variant.flywheel is not None and "velocities" in found.scales:
         _reduced(project, found, indices)
 
@@ -169,33 +158,34 @@ def _motion_results(project: Project, found: Measurables, of_velocities: list[in
 def _reduced(project: Project, found: Measurables, indices: Iterable[int]) -> None:
     """Reduced moments and energies: values of their steps, which stand on the velocity plans."""
     study, r = project.study, project.reduced
-    title, unit = tell("Reduced moment of forces"), MOMENT
+    title = tell("Reduced moment of forces")
     total = r.numbered.moment()
     moving = {id(step): name for name, step in (*study.velocities.points.items(), *study.velocities.omega.items())}
     powers = [step for step in total.args if isinstance(step, Step)]
     for k in indices:
         label, working = study.labels[k], []
         for power in powers:
-            entry, moment = f"{RESULTS}/{label}/M_{power.name.removeprefix('N_')}", float(value_at(power, k)) / r.omega1
+            name, moment = f"M_{power.name.removeprefix('N_')}", float(value_at(power, k)) / r.omega1
             velocity = next(a for a in power.args if isinstance(a, Step) and id(a) in moving)
             speed = abs(complex(value_at(velocity, k)))
             if speed > 0:
                 letter = "ω" if velocity.rule.gives == "number" else "V_"
-                found.check(entry, [f"{RESULTS}/{label}/{letter}{moving[id(velocity)]}"], lambda v, m=moment / speed: m * v)
-            found.add(Measurable(entry, RESULTS, title, label, f"M_{power.name.removeprefix('N_')}", unit, "result", moment,
-                                 ((power, k, 1 / r.omega1 + 0j),), "velocities", signed=True, main=False))
+                found.check(f"{RESULTS}/{label}/{name}", [f"{RESULTS}/{label}/{letter}{moving[id(velocity)]}"],
+                            lambda v, m=moment / speed: m * v)
+            found.add(result(title, label, name, MOMENT, moment, ((power, k, 1 / r.omega1 + 0j),), scale="velocities", signed=True,
+                             main=False))
             if moment:
-                working.append(entry)
+                working.append(f"{RESULTS}/{label}/{name}")
         found.check(f"{RESULTS}/{label}/M_red", working, lambda *moments: float(sum(moments)))
-        found.add(_value(f"{RESULTS}/{label}/M_red", title, label, tr("M_red"), unit, k, total))
+        found.add(_value(title, label, "M_red", tr("M_red"), MOMENT, k, total))
     _energies(project, found, indices)
 
 
-def _value(entry: str, title: str, label: str, quantity: str, unit: str, k: int, step: Step,
-           squares: tuple[tuple[float, Step, int, float], ...] = ()) -> Measurable:
+def _value(title: str, label: str, name: str, called: str, unit: str, k: int, step: Step,
+           squares: tuple[tuple[float, Step, int, float], ...] = (), main: bool = True) -> Measurable:
     """Value of a step at a position as a result that is read from the velocity plan."""
-    return Measurable(entry, RESULTS, title, label, quantity, unit, "result", float(value_at(step, k)), ((step, k, 1 + 0j),),
-                      "velocities", signed=True, squares=squares)
+    return result(title, label, name, unit, float(value_at(step, k)), ((step, k, 1 + 0j),), called, scale="velocities", signed=True,
+                  squares=squares, main=main)
 
 
 def _energies(project: Project, found: Measurables, indices: Iterable[int]) -> None:
@@ -203,54 +193,51 @@ def _energies(project: Project, found: Measurables, indices: Iterable[int]) -> N
     study, r = project.study, project.reduced
     vel, mu = study.velocities, found.scales["velocities"].mu
     total, plan = r.numbered.inertia, r.numbered.plan
-    title, unit = tell("Kinetic energies of the links, doubled"), ENERGY
+    title = tell("Kinetic energies of the links, doubled")
     for k in indices:
-        label, energies = study.labels[k], []
-        squares: list[tuple[float, Step, int, float]] = []
+        label = study.labels[k]
+        parts: list[tuple[str, str, str, float, Step, float]] = []  # name and letters, of which speed, its factor, step, mm
         for link in project.mechanism.links.values():
             n, turning = link.name, link.pivot_inertia or link.inertia
             if link.pivot_inertia is None and r.moves(link):
-                name, speed = f"m{n}V_{link.centre}²", f"{RESULTS}/{label}/V_{link.centre}"
-                energies.append(f"{RESULTS}/{label}/m{n}V_{link.centre}^2")
-                found.check(energies[-1], [speed], lambda v, m=link.mass: m * v**2)
-                squares.append((link.mass, vel.points[str(link.centre)], k, mu))
-                found.add(replace(_value(energies[-1], title, label, name, unit, k, plan[name], (squares[-1],)), main=False))
+                parts.append((f"m{n}V_{link.centre}^2", f"m{n}V_{link.centre}²", f"V_{link.centre}", link.mass,
+                              vel.points[str(link.centre)], mu))
             if turning:
                 name = f"{'J' if link.pivot_inertia is not None else 'J_S'}{n}ω{n}²"
-                energies.append(f"{RESULTS}/{label}/{name.replace('ω', 'omega').replace('²', '^2')}")
-                found.check(energies[-1], [f"{RESULTS}/{label}/ω{n}"], lambda w, j=turning: j * w**2)
-                squares.append((turning, vel.omega[n], k, 0.0))
-                found.add(replace(_value(energies[-1], title, label, name, unit, k, plan[name], (squares[-1],)), main=False))
-        found.check(f"{RESULTS}/{label}/J_red", energies, lambda *parts: float(sum(parts)) / r.omega1**2)
-        found.add(_value(f"{RESULTS}/{label}/J_red", tell("Reduced moment of inertia"), label, tr("J_red"), INERTIA, k, total,
-                         tuple((factor / r.omega1**2, step, at, per_mm) for factor, step, at, per_mm in squares)))
+                parts.append((name.replace("ω", "omega").replace("²", "^2"), name, f"ω{n}", turning, vel.omega[n], 0.0))
+        for name, called, speed, factor, step, per_mm in parts:
+            found.check(f"{RESULTS}/{label}/{name}", [f"{RESULTS}/{label}/{speed}"], lambda v, m=factor: m * v**2)
+            found.add(_value(title, label, name, called, ENERGY, k, plan[called], ((factor, step, k, per_mm),), False))
+        found.check(f"{RESULTS}/{label}/J_red", [f"{RESULTS}/{label}/{part[0]}" for part in parts],
+                    lambda *energies: float(sum(energies)) / r.omega1**2)
+        found.add(_value(tell("Reduced moment of inertia"), label, "J_red", tr("J_red"), INERTIA, k, total,
+                         tuple((factor / r.omega1**2, step, k, per_mm) for *_, factor, step, per_mm in parts)))
 
 
 def _forces(project: Project, found: Measurables) -> None:
-    """Force plans, arms and the lever at the position of the force analysis, and what they give."""
-    _loads(project, found)
+    """Force plans, arms and the lever at the position of the force analysis, and what they give: the balancing by both ways."""
+    study, forces, k = project.study, project.study.forces, project.force_index
+    label, name = study.labels[k], project.balancing
+    given = {a.name for a in study.applied}
+    _sizes(found, tell("Weights and forces of inertia"), label, k,
+           [step for step in study.loads[2] if step.rule.gives in ("force", "number") and step.name not in given])
+    _sizes(found, tell("Reactions"), label, k, [part.vector for part in forces.from_moments])
     _force_plans(project, found)
-    k = project.force_index
-    label = project.study.labels[k]
-    for name, step in project.study.forces.arms.items():
-        found.add(size(tell("Arms of reactions"), f"{RESULTS}/{label}/{name}", label, name, METRES, k, step, by=step))
-    _balancing(project, found)
+    _sizes(found, tell("Arms of reactions"), label, k, forces.arms.values())
+    for title, mark, step in ((tell("Balancing by the force plan"), "", forces.balancing),
+                              (tell("Balancing by the lever"), "-lever", study.lever.balancing)):
+        if step is not None:
+            found.add(size(title, label, name + mark, FORCE if study.driver is not None else MOMENT, k, step,
+                           letter_of(step) if step.name == name else name))
     _arms(project, found, k, label)
     _lever(project, found)
 
 
-def _loads(project: Project, found: Measurables) -> None:
-    """Weights and forces of inertia, and the tangential reactions that the moments of a link give."""
-    study, k = project.study, project.force_index
-    label = study.labels[k]
-    given = {a.name for a in study.applied}
-    for step in study.loads[2]:
-        if step.rule.gives in ("force", "number") and step.name not in given:
-            unit = FORCE if step.rule.gives == "force" else MOMENT
-            found.add(size(tell("Weights and forces of inertia"), f"{RESULTS}/{label}/{step.name}", label, letter_of(step), unit, k,
-                           step, by=step))
-    for step in (part.vector for part in study.forces.from_moments):
-        found.add(size(tell("Reactions"), f"{RESULTS}/{label}/{step.name}", label, letter_of(step), FORCE, k, step, by=step))
+def _sizes(found: Measurables, title: str, label: str, k: int, steps: Iterable[Step]) -> None:
+    """Magnitudes of forces, moments and arms."""
+    for step in steps:
+        unit = {"force": FORCE, "length": METRES}.get(step.rule.gives, MOMENT)
+        found.add(size(title, label, step.name, unit, k, step, letter_of(step)))
 
 
 def _force_plans(project: Project, found: Measurables) -> None:
@@ -272,20 +259,7 @@ def _force_plans(project: Project, found: Measurables) -> None:
                 if step.name in sides:
                     side = sides[step.name]
                     found.check(f"{RESULTS}/{label}/{step.name}", [f"{plan.name}/{label}/{side.tail.name}–{side.head.name}"], float)
-                found.add(size(tell("Reactions"), f"{RESULTS}/{label}/{step.name}", label, letter_of(step), FORCE, k, step,
-                               by=step))
-
-
-def _balancing(project: Project, found: Measurables) -> None:
-    """The balancing moment or force by both ways."""
-    study, k = project.study, project.force_index
-    label, name = study.labels[k], project.balancing
-    unit = FORCE if study.driver is not None else MOMENT
-    for title, mark, step in ((tell("Balancing by the force plan"), "", study.forces.balancing),
-                              (tell("Balancing by the lever"), "-lever", study.lever.balancing)):
-        if step is not None:
-            found.add(size(title, f"{RESULTS}/{label}/{name}{mark}", label, letter_of(step) if step.name == name else name, unit, k,
-                           step, by=step))
+                _sizes(found, tell("Reactions"), label, k, [step])
 
 
 def _lever(project: Project, found: Measurables) -> None:
@@ -304,14 +278,11 @@ def _lever(project: Project, found: Measurables) -> None:
 def _arms(project: Project, found: Measurables, k: int, label: str) -> None:
     """Arms of forces about the points that moments were taken of, as they are measured on the schemes of groups or on the plan."""
     f = project.study.forces
-    schemes = {link: key for key in found.scales if key.startswith("scheme-") for link in key.removeprefix("scheme-").split("-")}
-    crank = project.mechanism.crank.link
-    for step in f.plan:
-        if step.rule is not MOMENTS:
-            continue
+    schemes = {link: key for key in found.scales if key.startswith("scheme-")
+               for link in key.removeprefix("scheme-").replace("crank", project.mechanism.crank.link).split("-")}
+    for step in (s for s in f.plan if s.rule is MOMENTS):
         about = step.args[0]
-        link = step.name.removeprefix("ΣM").split("–")[0]
-        key = "scheme-crank" if link == crank and "scheme-crank" in found.scales else schemes.get(link, "positions")
+        key = schemes.get(step.name.removeprefix("ΣM").split("–")[0], "positions")
         moments: dict[tuple[str, ...], float] = {}
         for at, force, couple in zip(step.args[1::3], step.args[2::3], step.args[3::3], strict=True):
             if isinstance(couple, Step):
@@ -337,12 +308,12 @@ def _from_moments(project: Project, found: Measurables, total: Step, moments: Ma
     f, k = project.study.forces, project.force_index
     label = project.study.labels[k]
     products = [(tuple(map(plain, names)), moment) for names, moment in moments.items() if moment]
-    for result in [part.vector for part in f.from_moments] + ([f.balancing] if f.balancing is not None else []):
-        if result.args[0] is not total:
+    for unknown in [part.vector for part in f.from_moments] + ([f.balancing] if f.balancing is not None else []):
+        if unknown.args[0] is not total:
             continue
         across = []
-        if result.rule is TANGENTIAL:
-            _, centre, at = result.args
+        if unknown.rule is TANGENTIAL:
+            _, centre, at = unknown.args
             distance = np.atleast_1d(np.abs(centre.value - at.value))
             if np.ptp(distance) > 1e-9 * np.max(distance):  # along a slider; that of a link is given
                 across.append(plain(f"positions/{label}/{centre.name}{at.name}"))
@@ -351,10 +322,10 @@ def _from_moments(project: Project, found: Measurables, total: Step, moments: Ma
             continue
         exact = {name: found.entries[name].value * found.mu(name) for name in needs}
 
-        def compute(*values: float, exact: Mapping[str, float] = exact, of: float = abs(complex(value_at(result, k))),
+        def compute(*values: float, exact: Mapping[str, float] = exact, of: float = abs(complex(value_at(unknown, k))),
                     products: Sequence[tuple[tuple[str, ...], float]] = products, across: Sequence[str] = across) -> float:
             share = {name: value / exact[name] for name, value in zip(exact, values, strict=True)}
             now = sum(moment * prod(share[name] for name in names) for names, moment in products)
             return of * abs(now / sum(moment for _, moment in products)) / prod(share[name] for name in across)
 
-        found.check(f"{RESULTS}/{label}/{result.name}", needs, compute)
+        found.check(f"{RESULTS}/{label}/{unknown.name}", needs, compute)

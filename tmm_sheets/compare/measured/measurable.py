@@ -7,18 +7,20 @@ its tolerance.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import degrees, isfinite, pi
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import letter_of, spoken
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.words import marked, tell
+from tmm_sheets.task import units as quantities
+from tmm_sheets.words import every, marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Plan
@@ -29,30 +31,14 @@ MILLIMETRES, DEGREES, METRES, TURNS = marked("mm"), "°", marked("m"), marked("r
 SPEED, ANGULAR_SPEED, ACCELERATION, ANGULAR_ACCELERATION = marked("m/s"), marked("rad/s"), marked("m/s²"), marked("rad/s²")
 FORCE, MOMENT, MASS, INERTIA, ENERGY = marked("N"), marked("N·m"), marked("kg"), marked("kg·m²"), marked("kg·m²/s²")
 
-_RADIAN = degrees(1)
 SCALE = 0.1
 """Times as long as they should be that lengths may be in another unit, or drawn to another scale factor."""
 OTHERS: Mapping[str, tuple[tuple[str, float], ...]] = {
-    MILLIMETRES: ((METRES, 1e-3), (marked("cm"), SCALE)), DEGREES: ((marked("rad"), 1 / _RADIAN),),
+    MILLIMETRES: ((METRES, 1e-3), (marked("cm"), SCALE)), DEGREES: ((marked("rad"), 1 / degrees(1)),),
     SPEED: ((marked("mm/s"), 1e3),), ACCELERATION: ((marked("mm/s²"), 1e3),), ANGULAR_SPEED: ((TURNS, 30 / pi),),
     FORCE: ((marked("kgf"), 1 / 9.81), (marked("kN"), 1e-3)), MOMENT: ((marked("N·mm"), 1e3), (marked("kgf·m"), 1 / 9.81)),
 }
 """Units that are written by mistake for each, and how many times as large a number is in them."""
-_LENGTHS: Mapping[str, float] = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
-_ANGLES: Mapping[str, float] = {"°": 1.0, "deg": 1.0, "rad": _RADIAN}
-_LATIN: Mapping[str, str] = {
-    "м": "m", "с": "s", "рад": "rad", "Н": "N", "кг": "kg", "мм": "mm", "см": "cm", "об": "rev", "мин": "min", "хв": "min",
-    "Дж": "J", "град": "deg", "кН": "kN",
-}
-"""Russian and Ukrainian units."""
-_CYRILLIC = re.compile("|".join(sorted(_LATIN, key=len, reverse=True)))
-
-
-def latin(unit: str) -> str:
-    """One spelling of a unit in any language: Latin letters, no spaces, dots and brackets."""
-    bare = re.sub(r"[\s·⋅*^()?.]+", "", unit).replace("²", "2").replace("³", "3")
-    bare = _CYRILLIC.sub(lambda name: _LATIN[name[0]], bare)
-    return "rev/min" if bare == "rpm" else bare
 
 
 def unit_times(unit: str, own: str) -> float:
@@ -63,15 +49,12 @@ def unit_times(unit: str, own: str) -> float:
     ValueError
         if they measure different things.
     """
-    stated, wanted = latin(unit), latin(own)
-    if not stated or stated == wanted or "?" in unit:  # a code page without superscripts writes м/с?
-        return 1.0
-    for table in (_LENGTHS, _ANGLES):
-        if stated in table and wanted in table:
-            return table[stated] / table[wanted]
-    if unit.strip().startswith(("к", "k")) and latin(unit.strip()[1:]) == wanted:
-        return 1000.0
-    raise ValueError(unit)
+    stated = re.sub(r"[().]", "", unit)
+    if not stated or "?" in unit or quantities.common(stated) in map(quantities.common, every(own)):
+        return 1.0  # a code page without superscripts writes м/с?
+    if quantities.quantity_of(stated) != (quantities.quantity_of(own) or None):
+        raise ValueError(unit)
+    return quantities.si(f"1 {stated}") / quantities.si(f"1 {own}")
 
 
 # --- what is measured -----------------------------------------------------------------------------------------------------------
@@ -140,6 +123,8 @@ class Measurable:
         of an energy, which has no gradient where a point rests: factor, step, position, reading error per mm of each square.
     main
         False for what is asked for only where everything is.
+    of
+        the value from those of the steps of its terms; None where it grows by its gradient.
     """
 
     id: str
@@ -159,16 +144,13 @@ class Measurable:
     slope: tuple[str, str] | None = None
     squares: tuple[tuple[float, Step, int, float], ...] = ()
     main: bool = True
+    of: Callable[..., float] | None = None
 
-    @property
-    def is_distance(self) -> bool:
-        """True for the distance of two points."""
-        return len(self.terms) == 2 and not self.signed and self.terms[0][2] == -self.terms[1][2]
-
-    @property
-    def is_size(self) -> bool:
-        """True for the magnitude of a force."""
-        return len(self.terms) == 1 and not self.signed and self.terms[0][0].rule.gives == "force"
+    def off(self, value: float, exact: float) -> float:
+        """How far a number that is written so is off: without its sign where a magnitude is asked for, of angles the short way."""
+        if self.kind == "angle":
+            return angle_apart(value, exact, self.signed)
+        return (value if self.signed else abs(value)) - exact
 
     @property
     def is_way(self) -> bool:
@@ -235,76 +217,84 @@ class Measurables:
             self.entries.setdefault(plain(entry.id), replace(entry, id=plain(entry.id)))
 
 
-def length(plan: Plan, scales: Mapping[str, Scale], k: int, tail: Step, head: Step, name: str, key: str = "") -> Measurable:
+def scale_of(plan: Plan, scales: Mapping[str, Scale], key: str = "") -> float:
+    """Unit of a plan per millimetre of paper."""
+    return 1.0 if plan.unit == "mm" else scales[key or plan.name].mu
+
+
+def on_plan(plan: Plan, k: int, name: str, quantity: str, kind: Kind, value: float, terms: tuple[Term, ...], moves: bool = True,
+            **more: Any) -> Measurable:
+    """A number read off a plan at a position: a length with a ruler, mm, or an angle with a protractor, degrees."""
+    label = plan.labels[k] if len(plan.labels) > 1 and moves else ""
+    unit, reading = (MILLIMETRES, 1.0) if kind == "length" else (DEGREES, degrees(1 / PROTRACTOR))
+    return Measurable("/".join(filter(None, (plan.name, label, name))), plan.name, plan.title, label, quantity, unit, kind, value,
+                      terms, reading=reading, **more)
+
+
+def length(plan: Plan, scales: Mapping[str, Scale], k: int, tail: Step, head: Step, name: str, main: bool = True) -> Measurable:
     """Distance of two points on paper, mm."""
-    key = key or plan.name
-    mu = 1.0 if plan.unit == "mm" else scales[key].mu
+    mu = scale_of(plan, scales)
     away = complex(value_at(head, k) - value_at(tail, k))
     u = away / abs(away) if away else 1 + 0j
-    label = plan.labels[k] if len(plan.labels) > 1 else ""
-    terms = ((tail, k, -u / mu), (head, k, u / mu))
-    entry_id = "/".join(filter(None, (plan.name, label, name)))
-    names = list(plan.steps)
-    last = max(tail, head, key=lambda step: names.index(step.name))
-    return Measurable(entry_id, plan.name, plan.title, label, f"|{name}|", MILLIMETRES, "length", abs(away) / mu, terms, key, 1.0,
-                      head=last)
+    return on_plan(plan, k, name, f"|{name}|", "length", abs(away) / mu, ((tail, k, -u / mu), (head, k, u / mu)), scale=plan.name,
+                   head=max(tail, head, key=lambda step: [*plan.steps].index(step.name)), main=main,
+                   of=lambda a, b: abs(b - a) / mu)
 
 
-def way(plan: Plan, scales: Mapping[str, Scale], k: int, tail: Step, head: Step, name: str) -> Measurable | None:
-    """Direction of a vector on paper, degrees counter-clockwise from the x axis; None of one too short to lay a protractor to."""
+def direction(*ends: complex) -> float:
+    """Direction of a vector from one point to another, or from the pole, degrees counter-clockwise from the x axis."""
+    return degrees(np.angle(ends[-1] - sum(ends[:-1]))) % 360
+
+
+def way(plan: Plan, scales: Mapping[str, Scale], k: int, tail: Step, head: Step, name: str) -> Iterator[Measurable]:
+    """Direction of a vector on paper; nothing of one too short to lay a protractor to."""
     away = complex(value_at(head, k) - value_at(tail, k))
-    mu = 1.0 if plan.unit == "mm" else scales[plan.name].mu
-    if not abs(away) > SHORT * mu:
-        return None
-    label = plan.labels[k] if len(plan.labels) > 1 else ""
-    turn = 1j * away / abs(away) ** 2 * degrees(1)
-    entry_id = "/".join(filter(None, (plan.name, label, f"∠{name}")))
-    return Measurable(entry_id, plan.name, plan.title, label, f"∠{name}", DEGREES, "angle", degrees(np.angle(away)) % 360,
-                      ((tail, k, -turn), (head, k, turn)), reading=degrees(1 / PROTRACTOR), signed=True)
+    if abs(away) > SHORT * scale_of(plan, scales):
+        turn = 1j * away / abs(away) ** 2 * degrees(1)
+        # Where lines were crossed to find a point it tells which way they went.
+        yield on_plan(plan, k, f"∠{name}", f"∠{name}", "angle", direction(away), ((tail, k, -turn), (head, k, turn)), signed=True,
+                      main=rules.LINE_LINE in (head.rule, tail.rule), of=direction)
 
 
-def sense(title: str, entry_id: str, label: str, quantity: str, k: int, step: Step) -> Measurable | None:
-    """Which way something turns, +1 counter-clockwise; None of what does not, or hardly."""
+def sense(title: str, label: str, quantity: str, k: int, step: Step, main: bool) -> Iterator[Measurable]:
+    """Which way something turns, +1 counter-clockwise; nothing of what does not, or hardly."""
     value = float(value_at(step, k))
-    if not abs(value) > RESTS * np.max(np.abs(step.value)):
-        return None
-    said = tell("sense of {quantity}: +1 counter-clockwise, −1 clockwise").format(quantity=quantity)
-    return Measurable(entry_id, RESULTS, title, label, said, "", "sense", float(np.sign(value)),
-                      ((step, k, complex(1 / abs(value))),), signed=True)
+    if abs(value) > RESTS * np.max(np.abs(step.value)):
+        said = tell("sense of {quantity}: +1 counter-clockwise, −1 clockwise").format(quantity=quantity)
+        yield Measurable(f"{RESULTS}/{label}/sense-{quantity}", RESULTS, title, label, said, "", "sense", float(np.sign(value)),
+                         ((step, k, complex(1 / abs(value))),), signed=True, main=main, of=lambda x: float(np.sign(x.real)))
 
 
-def measured_step(plan: Plan, scales: Mapping[str, Scale], k: int, step: Step, name: str = "", key: str = "",
-                  called: str = "") -> Measurable:
+def measured_step(plan: Plan, scales: Mapping[str, Scale], k: int, step: Step, name: str = "", key: str = "", called: str = "",
+                  **more: Any) -> Measurable:
     """A step that is a length, an angle or, of a diagram, a point whose ordinate is measured; ``called`` so on paper."""
-    key = key or plan.name
-    label = plan.labels[k] if len(plan.labels) > 1 and np.ndim(step.value) else ""
     called = called or (spoken(name) if name else letter_of(step))
-    name = name or step.name
-    entry_id = "/".join(filter(None, (plan.name, label, name)))
-    value = complex(value_at(step, k))
+    more |= {"head": step, "moves": np.ndim(step.value) > 0}
+    value, point = complex(value_at(step, k)), step.rule.gives == "point"
     if step.rule.gives in ("angle", "inclination"):
-        return Measurable(entry_id, plan.name, plan.title, label, called, DEGREES, "angle", degrees(value.real),
-                          ((step, k, complex(degrees(1))),), reading=degrees(1 / PROTRACTOR), head=step)
-    mu = 1.0 if plan.unit == "mm" else scales[key].mu
-    along = 1j if step.rule.gives == "point" else 1 + 0j
-    real = value.imag if step.rule.gives == "point" else value.real
-    return Measurable(entry_id, plan.name, plan.title, label, called, MILLIMETRES, "length", real / mu,
-                      ((step, k, along / mu),), key, 1.0, head=step, signed=True)
+        return on_plan(plan, k, name or step.name, called, "angle", degrees(value.real), ((step, k, complex(degrees(1))),), **more)
+    mu = scale_of(plan, scales, key)
+    return on_plan(plan, k, name or step.name, called, "length", (value.imag if point else value.real) / mu,
+                   ((step, k, (1j if point else 1 + 0j) / mu),), scale=key or plan.name, signed=True, **more)
 
 
-def size(title: str, entry_id: str, label: str, quantity: str, unit: str, k: int, step: Step,
-         by: Step | None = None) -> Measurable:
+def result(title: str, label: str, name: str, unit: str, value: float, terms: tuple[Term, ...], called: str = "",
+           **more: Any) -> Measurable:
+    """A result at a position, ``called`` so where its letter is not its name."""
+    return Measurable(f"{RESULTS}/{label}/{name}", RESULTS, title, label, called or name, unit, "result", value, terms, **more)
+
+
+def size(title: str, label: str, name: str, unit: str, k: int, step: Step, called: str = "", main: bool = True) -> Measurable:
     """Magnitude of a vector from the pole or of a number as a result."""
     value = complex(value_at(step, k))
-    u = value / abs(value) if value else 1 + 0j
-    return Measurable(entry_id, RESULTS, title, label, quantity, unit, "result", abs(value), ((step, k, u),), head=by)
+    return result(title, label, name, unit, abs(value), ((step, k, value / abs(value) if value else 1 + 0j),), called, head=step,
+                  main=main, of=abs)
 
 
 def magnitude(entry: Measurable) -> Measurable:
     """The same entry asked for without its sign."""
-    if entry.value >= 0:
-        return replace(entry, signed=False)
-    return replace(entry, signed=False, value=-entry.value, terms=tuple((s, k, -g) for s, k, g in entry.terms))
+    sign = -1 if entry.value < 0 else 1
+    return replace(entry, signed=False, value=abs(entry.value), terms=tuple((s, k, sign * g) for s, k, g in entry.terms))
 
 
 def angle_apart(a: float, b: float, sense: bool = False) -> float:

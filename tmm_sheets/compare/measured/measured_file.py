@@ -8,17 +8,16 @@ is said. Ids are ASCII, for no code page to spoil.
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from itertools import groupby
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from tmm_sheets import csv_tables, encodings, files, quoting, spelling
+from tmm_sheets.compare.elements import grouped
 from tmm_sheets.compare.measured import measurable as units
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, plain
 from tmm_sheets.construction.scale import Scale
@@ -48,8 +47,6 @@ NOT_MEASURED = marked("not measured")
 """What may stand in place of a number, besides dashes and nothing."""
 FACTOR = "mu"
 """In place of a plan's name in the id of a line that states a scale factor."""
-LARGEST = 5_000_000
-"""Bytes of the largest file that is read; a whole project has some 50,000."""
 APART = 300.0
 """How many times as large or small as on the sheet a scale factor may be: metres for millimetres are more."""
 ABSURD = 1e12
@@ -96,21 +93,20 @@ def template(project: str, found: Measurables, everything: bool = False) -> byte
     semicolons, as where the comma is in numbers; where that is a point, by commas.
     """
     asked = asked_for(found, everything)
-    rows = list[list[str]]()
-    rows.append([f"# {tell(OF_PROJECT).format(project=project)}"])
-    rows.append([tell("# Fill in the column “{column}”; leave empty what you have not measured. Lengths are mm of the drawing.")
-                   .format(column=tell(COLUMNS["measured"]))])
-    rows.append([tell("# Angles of vectors are counted counter-clockwise from the x axis, 0° to 360°: ∠pb is that of the arrow "
-                        "from p to b.")])
-    rows.append([tell("# Lines {lines}: scale factors of the sheets. If you drew to others, write yours.")
-                   .format(lines=f"{FACTOR}/...")])
-    rows.append([tell(heading) for heading in COLUMNS.values()])
+    rows = [
+        [f"# {tell(OF_PROJECT).format(project=project)}"],
+        [tell("# Fill in the column “{column}”; leave empty what you have not measured. Lengths are mm of the drawing.")
+         .format(column=tell(COLUMNS["measured"]))],
+        [tell("# Angles of vectors are counted counter-clockwise from the x axis, 0° to 360°: ∠pb is that of the arrow "
+              "from p to b.")],
+        [tell("# Lines {lines}: scale factors of the sheets. If you drew to others, write yours.").format(lines=f"{FACTOR}/...")],
+        [tell(heading) for heading in COLUMNS.values()]]
     used = {e.scale for e in asked if e.scale}
     for key, scale in found.scales.items():
-        if key in used and units.latin(scale.unit) != "mm/mm":
+        if key in used and len(set(scale.unit.split("/"))) > 1:  # else in millimetres of paper
             rows.append([f"{FACTOR}/{plain(key)}", tell("scale factors"), "", scale.symbol, "", scale.unit,
                          told(f"{scale.mu:.10g}")])
-    for (title, label), entries in groupby(asked, key=lambda e: (e.title, e.label)):
+    for (title, label), entries in grouped(asked, lambda e: (e.title, e.label)).items():
         rows.append([f"# {title}, {tell('position {label}').format(label=label)}" if label else f"# {title}"])
         rows += [[e.id, e.title, e.label, e.quantity, e.steps, tell(e.unit), ""] for e in entries]
     return csv_tables.written(rows, ";" if decimal_sign(reader()) == "," else ",")
@@ -118,12 +114,8 @@ def template(project: str, found: Measurables, everything: bool = False) -> byte
 
 def asked_for(found: Measurables, everything: bool = False) -> list[Measurable]:
     """What is asked for in the file: plan by plan, and there position by position."""
-    asked = [e for e in found.entries.values() if everything or e.main]
-    first: dict[tuple[str, ...], int] = {}
-    for n, e in enumerate(asked):
-        first.setdefault((e.title,), n)
-        first.setdefault((e.title, e.label), n)
-    return sorted(asked, key=lambda e: (first[e.title,], first[e.title, e.label]))
+    asked = (e for e in found.entries.values() if everything or e.main)
+    return [e for some in grouped(asked, lambda e: (e.title, e.label)).values() for e in some]
 
 
 # --- reading ---------------------------------------------------------------------------------------------------------------
@@ -147,7 +139,8 @@ def read(path: Path, project: Project, found: Measurables) -> FilledTable:
     """
     name = str(path)
     filled = FilledTable()
-    text = _decoded(content(path, project), name, filled.notes)
+    text, note = text_of(path, project)
+    filled.notes += [f"{name}: {note}"] if note else []
     _check_project(text, name, project)
     rows = _rows(text, name, filled.notes, project)
     table = _Table(name, found, filled, *_columns(rows, name, found, filled.notes))
@@ -164,32 +157,12 @@ def _writes(project: Project) -> str:
     return tell("{command} writes a file to fill in").format(command=project.variant.command("compare", "--template"))
 
 
-def content(path: Path, project: Project) -> bytes:
+def text_of(path: Path, project: Project) -> encodings.DecodedText:
     """What is in a file, if it may be one of numbers."""
-    writes = _writes(project)
-    try:
-        if path.is_dir():
-            raise BadInput(Problem(tell("expected a CSV file, this is a folder"), str(path)))
-        data = files.content(path) if path.stat().st_size <= LARGEST else b""
-    except OSError as e:
-        raise BadInput(Problem(tell("cannot be read: {why}").format(why=(e.strerror or str(e)).lower()), str(path),
-                               hint=writes if isinstance(e, FileNotFoundError) else "")) from None
-    if not data.strip():
-        large = path.stat().st_size > LARGEST
-        what = tell("larger than {size} MB: not a file of numbers").format(size=LARGEST // 1_000_000) if large else tell(
-            "the file is empty")
-        raise BadInput(Problem(what, str(path), hint=writes))
-    if data[:2] == b"PK" or data[:4] == b"\xd0\xcf\x11\xe0":
-        raise BadInput(Problem(tell("this is a workbook, not a CSV file"), str(path),
-                               hint=tell("save it as CSV (File – Save as – CSV)")))
-    return data
-
-
-def _decoded(data: bytes, name: str, notes: list[str]) -> str:
-    text, note = encodings.decoded(data, name, marked("save it as CSV, UTF-8"))
-    if note:
-        notes.append(f"{name}: {note}")
-    return encodings.cleaned(text)
+    read = csv_tables.text_of(path, _writes(project))
+    if not read.text.strip():
+        raise BadInput(Problem(tell("the file is empty"), str(path), hint=_writes(project)))
+    return read
 
 
 def _check_project(text: str, name: str, project: Project) -> None:
@@ -220,26 +193,16 @@ Row = tuple[int, list[str]]
 
 def _rows(text: str, name: str, notes: list[str], project: Project) -> list[Row]:
     """Lines with their numbers, split at the separator they use; no empty ones, no remarks."""
-    lines = [(i, line) for i, line in enumerate(text.splitlines(), 1)
-             if line.strip(" ;,\t\"") and not line.lstrip(' "\t').startswith("#")]
-    if not lines:
-        raise BadInput(Problem(tell("no lines with numbers"), name,
-                               hint=_writes(project)))
-    head = lines[0][1]
-    separator = max(";\t,", key=head.count)
-    if head.count(separator) == 0:
-        raise BadInput(Problem(tell("no separator found: expected columns with ; or , or a tab between them"), name, lines[0][0],
+    found = [*csv_tables.rows(text, name, "#")]
+    if not found:
+        raise BadInput(Problem(tell("no lines with numbers"), name, hint=_writes(project)))
+    if len(found[0][1]) == 1:
+        raise BadInput(Problem(tell("no separator found: expected columns with ; or , or a tab between them"), name, found[0][0],
                                hint=tell("save the table as CSV with semicolons")))
+    separator = csv_tables.separator(text, "#")
     if separator == "\t":
         notes.append(tell("{file}: columns separated by tabs").format(file=name))
-    found: list[Row] = []
-    for i, line in lines:
-        try:
-            cells = next(csv.reader([line], delimiter=separator))
-        except csv.Error as e:
-            raise BadInput(Problem(tell("cannot be read as CSV: {why}").format(why=e), name, i)) from None
-        found.append((i, [c.strip().strip("\u00a0") for c in cells]))
-    if separator == ",":
+    elif separator == ",":
         _mend_commas(found, name, notes)
     return found
 
@@ -267,7 +230,7 @@ def _columns(rows: list[Row], name: str, found: Measurables, notes: list[str]) -
     columns = {known[title]: i for i, title in reversed([*enumerate(h.lower().strip(" :") for h in head)]) if title in known}
     if "id" in columns and "measured" in columns:
         return columns, head, 1
-    if not columns and (_known(head[0], found) or plain(head[0]).startswith(f"{FACTOR}/")):
+    if not columns and (plain(head[0]) in found.entries or plain(head[0]).startswith(f"{FACTOR}/")):
         notes.append(tell("{file}: no heading: first column taken for {first}, last for {last}").format(
             file=name, first=tell(COLUMNS["id"]), last=tell(COLUMNS["measured"])))
         return {"id": 0, "measured": len(head) - 1}, [], 0
@@ -413,14 +376,9 @@ def _plain(written: str) -> str:
     return re.sub(r"(?<=\d)[\s\u00a0\u202f'](?=\d{3}(?!\d))", "", bare)
 
 
-def _known(key: str, found: Measurables) -> str:
-    """The id of the entry that is meant, allowing for primes, dashes and letters that look alike; "" when there is none."""
-    return next((k for k in (key, plain(key)) if k in found.entries), "")
-
-
 def _entry(key: str, found: Measurables, filled: FilledTable, name: str, number: int) -> Measurable:
-    known = _known(key, found)
-    if not known:
+    known = plain(key)  # allowing for primes, dashes and letters that look alike
+    if known not in found.entries:
         raise _Refused(tell("unknown quantity {key}").format(key=key), spelling.hint(key, found.entries, 2), "id")
     if known != key:
         filled.notes.append(tell("{place}: {key} read as {known}").format(place=f"{name}:{number}", key=key, known=known))

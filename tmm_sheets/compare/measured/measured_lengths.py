@@ -13,7 +13,7 @@ import numpy as np
 
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.codes import Number, Own, Remark, joined
-from tmm_sheets.compare.diagnosis.hypotheses import Change, any_of, displaced, replay
+from tmm_sheets.compare.diagnosis.hypotheses import any_of, replay
 from tmm_sheets.compare.elements import grouped
 from tmm_sheets.compare.findings import (
     FindingRecord,
@@ -30,7 +30,8 @@ from tmm_sheets.compare.measured import measured_file
 from tmm_sheets.compare.measured.chain import EXACT, MOST, judge
 from tmm_sheets.compare.measured.collecting import measurables
 from tmm_sheets.compare.measured.evidence import SEVERAL, JudgedValue, Mistake
-from tmm_sheets.compare.measured.measurable import RESULTS, Measurables
+from tmm_sheets.compare.measured.measurable import RESULTS, Measurables, scale_of
+from tmm_sheets.compare.measured.mistake_search import moved
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import letter_of, sentence
@@ -54,7 +55,7 @@ class PlanPictures:
     def __init__(self, found: Measurables, errors: Errors) -> None:
         self.errors = errors
         self.plans: Mapping[str, tuple[Plan, float]] = {
-            plan.name: (plan, 1.0 if plan.unit == "mm" else found.scales[key].mu) for plan, key in found.plans}
+            plan.name: (plan, scale_of(plan, found.scales, key)) for plan, key in found.plans}
 
     def picture(self, start: JudgedValue) -> StoryPicture | None:
         """The plan that a mistake shows in at its position; None where that is no plan of points."""
@@ -68,8 +69,7 @@ class PlanPictures:
         if not at:
             return None
         m = start.mistake
-        at_step = [] if m is None else [Change(m.step, displaced(complex(*m.moved)), m.place[1] if np.ndim(m.step.value) else None)]
-        changed = replay(self.errors, start.wrong[0].changes if start.wrong else at_step)
+        changed = replay(self.errors, start.wrong[0].changes if start.wrong else [moved(m.step, m.place, m.moved)] if m else [])
         with np.errstate(all="ignore"):
             wrong = {s: complex(value_at(changed(s), k)) / mu for s in at}
         size = np.ptp([z.real for z in at.values()]) + np.ptp([z.imag for z in at.values()])
@@ -122,7 +122,7 @@ def table(project: Project) -> bytes:
 
 def compare(project: Project, path: Path, pencil: float, reading: float, say: Callable[[str], None]) -> Report:
     """Judge the numbers of a filled file."""
-    measured_file.content(path, project)  # one that cannot be read is refused before any work is done for it
+    measured_file.text_of(path, project)  # one that cannot be read is refused before any work is done for it
     found = measurables(project, say)
     filled = measured_file.read(path, project, found)
     say(tell("errors"))
@@ -162,16 +162,11 @@ def _row(j: JudgedValue) -> tuple[str, ...]:
     e = j.entry
     percent = "–" if j.percent is None or abs(j.percent) >= 1000 or abs(j.exact) < j.tolerance else told(decimal(j.percent, 1))
     tolerance = f"±{told(rounded(j.tolerance, 2))}" if EXACT < j.tolerance < float("inf") else "0" if j.tolerance <= EXACT else "–"
-    colour = said_verdict(j.verdict)
-    said = [colour]
-    if j.follows is not None:
-        said = [tell("{verdict}, follows from {number}").format(verdict=colour, number=j.follows.row)]
-    elif j.starts:
-        said = [tell("{verdict}, START").format(verdict=colour)]
-    if j.remark:
-        said.append(j.remark)
+    said = (tell("{verdict}, follows from {number}") if j.follows is not None else
+            tell("{verdict}, START") if j.starts else "{verdict}")
+    said = said.format(verdict=said_verdict(j.verdict), number=j.follows.row if j.follows is not None else "")
     return ("·" if j.follows is not None else MARKS[j.verdict], e.label, e.quantity, told(_exact(j)), _measured(j).said(),
-            _deviation(j), percent, tolerance, "; ".join(said))
+            _deviation(j), percent, tolerance, f"{said}; {j.remark}" if j.remark else said)
 
 
 def _measured(j: JudgedValue) -> Remark:

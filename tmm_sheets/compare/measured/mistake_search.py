@@ -45,7 +45,7 @@ from tmm_sheets.compare.measured.evidence import (
     loss,
     place_of,
 )
-from tmm_sheets.construction.step import value_at
+from tmm_sheets.construction.step import Step, value_at
 
 T = TypeVar("T")
 
@@ -124,9 +124,7 @@ def _meant(evidence: Evidence, n: int) -> float:
 
 def _apart(evidence: Evidence, n: int, m: int) -> float:
     """How far the number of a row is from that of another."""
-    j = evidence.judged[m]
-    value = evidence.judged[n].line.value
-    return j.apart((value if j.entry.signed or j.entry.kind == "angle" else abs(value)) - _meant(evidence, m))
+    return evidence.judged[m].entry.off(evidence.judged[n].line.value, _meant(evidence, m))
 
 
 def _off(evidence: Evidence, n: int) -> bool:
@@ -235,7 +233,7 @@ def displaced_step(evidence: Evidence, i: int, most_is_wrong: bool = False) -> E
     shares, doubt = np.zeros((2, len(evidence.judged)))
     shares[lines] = _shares(evidence, m.place, m.moved)
     doubt[lines] = np.hypot(np.sqrt(np.einsum("ni,ij,nj->n", gradient, m.uncertain, gradient)), CURVED * np.abs(shares[lines]))
-    return Explanation((_change(evidence, m.place, m.moved),), shares, doubt, m.score, mistake=m)
+    return Explanation((moved(m.step, m.place, m.moved),), shares, doubt, m.score, mistake=m)
 
 
 def _usual(evidence: Evidence, place: Place) -> npt.NDArray[np.float64]:
@@ -281,8 +279,7 @@ def _mistake(evidence: Evidence, place: Place, exact: bool = False) -> Mistake:
 
 def _can_be_wrong(evidence: Evidence, place: Place) -> bool:
     """False for what follows from the project file alone and was not written down: nobody has seen it wrong."""
-    error = evidence.errors.error(evidence.steps[place])
-    return place in evidence.heads or bool(error[min(place[1], len(error) - 1)] > 0)
+    return place in evidence.heads or evidence.errors.error_at(evidence.steps[place], place[1]) > 0
 
 
 def _helps(evidence: Evidence, mistake: Mistake, i: int) -> bool:
@@ -307,12 +304,12 @@ def _helps(evidence: Evidence, mistake: Mistake, i: int) -> bool:
 
 def _shares(evidence: Evidence, place: Place, x: Floats) -> Floats:
     """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
-    value, lines = evidence.with_changes((_change(evidence, place, x),)), evidence.by_place[place][0]
+    value, lines = evidence.with_changes((moved(evidence.steps[place], place, x),)), evidence.by_place[place][0]
     return np.asarray([evidence.judged[i].changed(value) for i in lines] - evidence.predicted[lines])
 
 
-def _change(evidence: Evidence, place: Place, x: Floats) -> Change:
-    step = evidence.steps[place]
+def moved(step: Step, place: Place, x: Floats) -> Change:
+    """A step at a position that is displaced."""
     return Change(step, displaced(complex(*x)), place[1] if np.ndim(step.value) else None)
 
 

@@ -117,7 +117,7 @@ class OwnNumbers:
         self._known: dict[int, OwnValue | None] = {}
         self._rows: dict[tuple[int, int], Any] = {}
         for j in self.judged:
-            uncertain = [term for term in j.entry.terms if self._uncertain(term[0], term[1])]
+            uncertain = [term for term in j.entry.terms if errors.error_at(*term[:2])]
             if len(uncertain) == 1 and np.isfinite(j.tolerance) and not j.entry.is_way:
                 self._measured.setdefault(place_of(*uncertain[0][:2]), []).append(j)
 
@@ -130,14 +130,10 @@ class OwnNumbers:
             self._known[id(j)] = OwnValue(j, steps, self._errors) if made and measured else None
         return self._known[id(j)]
 
-    def _uncertain(self, step: Step, k: int) -> bool:
-        error = self._errors.error(step)
-        return bool(error[min(k, len(error) - 1)] != 0)
-
     def _gathered(self, step: Step, k: int, j: JudgedValue, steps: dict[Place, _Done]) -> bool:
         """Gather what a step is made of, back to measured numbers; False where something drawn was not measured."""
         place = place_of(step, k)
-        if place in steps or not self._uncertain(step, k):
+        if place in steps or not self._errors.error_at(step, k):
             return True
         before = [m for m in self._measured.get(place, ()) if self._rank[id(m)] < self._rank[id(j)]]
         if before:
@@ -151,7 +147,7 @@ class OwnNumbers:
         for a, at in made_of:
             if np.ndim(a.value) and np.size(a.value) not in (1, np.size(step.value)) and step.rule.compute is not take:
                 return False
-            if self._uncertain(a, at) and not self._gathered(a, at, j, steps):
+            if self._errors.error_at(a, at) and not self._gathered(a, at, j, steps):
                 return False
         steps[place] = _Done(step, None, [place_of(a, at) for a, at in made_of])
         return True

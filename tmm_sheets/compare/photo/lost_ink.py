@@ -31,7 +31,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.box import Box
-from tmm_sheets.compare.elements import SAMPLED, Element, sampled
+from tmm_sheets.compare.elements import SAMPLED, Element, grouped, sampled
 from tmm_sheets.compare.photo.profiles import ProfileLines, fit_freely, peaks, profiles, runs
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Floats, Map
 from tmm_sheets.compare.photo.traces import NEARLY_ALL, InkTrace, expected_ink
@@ -238,11 +238,9 @@ HALF, MOST = 0.4, 0.7
 
 def torn_widths(traces: Sequence[InkTrace]) -> set[float]:
     """Widths of the lines that a picture has torn."""
-    found: dict[float, list[bool]] = {}
-    for t in traces:
-        if t.status == "measured" and t.darkness and expected_ink(t.element) == 1.0:  # by itself
-            found.setdefault(line_type(t.element.style).width, []).append(t.covered < WHOLE)
-    return {width for width, pieces in found.items() if len(pieces) >= FEW and np.mean(pieces) >= SEVERAL}
+    alone = (t for t in traces if t.status == "measured" and t.darkness and expected_ink(t.element) == 1.0)
+    return {width for width, some in grouped(alone, lambda t: line_type(t.element.style).width).items()
+            if len(some) >= FEW and np.mean([t.covered < WHOLE for t in some]) >= SEVERAL}
 
 
 def in_pieces(t: InkTrace, torn: set[float]) -> bool:
