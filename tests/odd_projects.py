@@ -17,6 +17,7 @@ from tmm_sheets.compare.measured.collecting import measurables
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.record import recording
+from tmm_sheets.result_files import json_pieces
 from tmm_sheets.sheets import composition, sheet
 from tmm_sheets.task import variant
 from tmm_sheets.task.title_entries import Names
@@ -144,7 +145,7 @@ def _steps(file, drawing):
     project = Project(read)
     yield "show", lambda: summary.text(read, Names())
     yield "check", lambda: (project.check(), composition.check(project))
-    yield "solve", lambda: results.as_json(results.assemble(project, None, refused={}))
+    yield "solve", lambda: "".join(json_pieces(results.assemble(project, None, refused={})))
     if drawing and len(read.sheets) < 10:
         yield "build", lambda: [svg.render(found.drawing) for found in sheet.every(project).drawn.values()]
         yield "record", lambda: recording.record(project, (1,))

@@ -333,7 +333,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
 project = Project(catalogue.read("lugansk/shaper"))
-sheet.compose(project, {n})
+sheet.composed(project, {n}).drawing
 print(" ".join(m for m in sys.modules if m.startswith("tmm_sheets.")))
 print(" ".join(name for name, plans in project.plans.items() if plans is not None))
 print(" ".join(p.name for plans in project.plans.values() if plans for p in plans.values() if any(s.evaluated for s in p)))

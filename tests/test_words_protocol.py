@@ -14,6 +14,7 @@ from tmm_sheets.construction.scale import times
 from tmm_sheets.construction.step import Plan
 from tmm_sheets.project import Project
 from tmm_sheets.record import recording
+from tmm_sheets.result_files import json_pieces
 
 PROJECTS = ("lugansk/engine", "lugansk/cam_flat", "sixbar/9:4", "transport/crusher@12-СДМ-1908", "tests/projects/feeder.toml")
 CYRILLIC = re.compile("[\u0400-\u04ff]+")
@@ -67,7 +68,7 @@ def test_names_ids_and_numbers_are_the_same_in_every_language(other):
             project = Project(catalogue.read("tests/projects/feeder.toml"))
             record, _ = recording.record(project)
             entries = collecting.measurables(project, lambda what: None).entries
-            solved = results.as_json(results.assemble(project, None))
+            solved = "".join(json_pieces(results.assemble(project, None)))
             found[language] = ([plan["steps"] for plan in record["plans"]], sorted(record["steps"]), sorted(record["rules"]),
                                record["results"], list(entries), [e.value for e in entries.values()], solved)
             assert any(name.endswith("^k") for name in entries)

@@ -370,7 +370,7 @@ class Opened:
         from tmm_sheets.sheets import sheet
 
         (n,) = self.project.variant.chosen((number,))
-        return Picture(sheet.compose(self.project, n))
+        return Picture(sheet.composed(self.project, n).drawing)
 
     @property
     @_asked

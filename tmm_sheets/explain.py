@@ -147,14 +147,11 @@ class Askers:
             if step in self.readers and step not in shown:
                 found[step] = self.readers[step].said
             elif step in whose:
-                found.setdefault(step, _for(whose[step]))
+                user = whose[step]
+                found.setdefault(step, tell("search: {purpose}").format(purpose=tell(user.seconds.purpose))
+                                 if isinstance(user.seconds, SearchCount) else
+                                 tell("for {step}").format(step=user.path or user.name))
         return {step: Asker(found.get(step, ""), step in shown) for step in kept}
-
-
-def _for(step: Step) -> str:
-    """What a step is made for."""
-    return tell("search: {purpose}").format(purpose=tell(step.seconds.purpose)) if isinstance(step.seconds, SearchCount) else \
-        tell("for {step}").format(step=step.path or step.name)
 
 
 @contextmanager

@@ -63,8 +63,7 @@ def meaning_of(markup: str, language: str, section: str = "") -> str:
 
     Its own entry, or the pattern with the longest beginning.
     """
-    own = _meaning(markup, words(language).get(f"letters-{section}", {}))
-    return own or _meaning(markup, words(language).get("letters", {}))
+    return _meaning(markup, words(language).get(f"letters-{section}", {})) or _meaning(markup, words(language).get("letters", {}))
 
 
 def _meaning(markup: str, table: Mapping[str, str]) -> str:

@@ -15,7 +15,7 @@ from tmm_sheets.construction.step import Part, Plan, Reported, Step, part_of, va
 from tmm_sheets.errors import BadInput, CannotBuild, together
 from tmm_sheets.numbers import Sizes, clean, in_a_row, listed
 from tmm_sheets.project import LINKAGE, Project
-from tmm_sheets.result_files import json_pieces, leaves, plain_numbers, row
+from tmm_sheets.result_files import leaves, plain_numbers, row
 from tmm_sheets.words import tell, tell_n
 
 if TYPE_CHECKING:
@@ -240,11 +240,6 @@ def _undefined(table: dict[str, Any], count: int) -> list[int]:
         if numbers is not None and len(numbers) == count:
             lost |= ~np.isfinite(numbers).reshape(count, -1).all(axis=1)
     return [int(k) for k in np.flatnonzero(lost)]
-
-
-def as_json(tree: dict[str, Any]) -> str:
-    """JSON text of a results tree, a line for every key down to the third level."""
-    return "".join(json_pieces(tree))
 
 
 def listing(tree: dict[str, Any]) -> str:

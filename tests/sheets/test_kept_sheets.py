@@ -1,10 +1,11 @@
 """A sheet that is kept is the sheet itself, in every format and for every reader; what was put in its place is none."""
 
-import json
+import pickle
 import subprocess
 import sys
 from dataclasses import fields, is_dataclass
 from importlib import import_module
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +16,8 @@ from tests.project_files import FOUR_BAR, write
 from tmm_sheets import catalogue, kept, words
 from tmm_sheets.__main__ import run
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import answered, composing, composition, sheet
-from tmm_sheets.sheets.answered import Answered
+from tmm_sheets.sheets import composed, composing, composition, sheet
+from tmm_sheets.sheets.composed import Answered, Composed
 from tmm_sheets.task.variant import parse
 from tmm_sheets.words import Remark
 
@@ -59,7 +60,7 @@ def same(a, b):
 def test_it_is_the_sheet_itself(name, n):
     with kept.unused():
         made = sheet.composed(opened(name), n)
-    found = sheet.loaded(sheet.stored(made))
+    found = sheet.loaded(sheet.stored(made), Composed)
     assert same(made, found)
     for form in ("dxf", "pdf", "svg"):
         writer = import_module(f"tmm_sheets.backends.{form}")
@@ -79,7 +80,7 @@ def test_remarks_are_kept_as_they_are():
     inner = Remark("group {name}", {"name": "2–3"})
     several = Remark(("{count} plan", "{count} plans"), {"count": 3, "size": 1.5}, 3)
     for remark in (inner, several, Remark("{what}!", {"what": inner})):
-        told = sheet.remark_from_row(json.loads(json.dumps(sheet.row_of_remark(remark))))
+        told = composed._Reader(BytesIO(pickle.dumps(remark))).load()
         assert told == remark
         assert str(told) == str(remark)
 
@@ -137,22 +138,23 @@ def test_what_is_warned_of_is_kept(place, tmp_path, capsys):
     assert told[0] == told[1]
 
 
-@pytest.mark.parametrize("data", [b"", b"\0\0\0\2{}", b"\0\0\0\4null", b"\0\0\0\2[]", b"\xff" * 40, b"\0\0\0\1{" + bytes(64)])
+@pytest.mark.parametrize("data", [
+    b"", b"\0\0\0\2{}", b"\xff" * 40, *map(pickle.dumps, (None, {}, Remark("a"), subprocess.call, np.memmap, Path("a")))])
 def test_other_bytes_are_no_sheet(data):
-    assert sheet.loaded(data) is None
+    assert sheet.loaded(data, Composed) is None
 
 
 def test_a_sheet_cut_short_is_none():
     data = sheet.stored(sheet.composed(opened("sixbar/8:3"), 1))
-    assert sheet.loaded(data) is not None
+    assert sheet.loaded(data, Composed) is not None
     for end in (10, len(data) // 3, len(data) // 2, len(data) - 16, len(data) - 8, len(data) - 1):
-        assert sheet.loaded(data[:end]) is None
-    assert sheet.loaded(data + bytes(16)) is None
+        assert sheet.loaded(data[:end], Composed) is None
+    assert sheet.loaded(data + bytes(16), Composed) is None
 
 
 def test_only_the_same_answers_find_what_was_kept(place, monkeypatch):
     def found(project, n=1):
-        return [*Answered(project, n, "sheet", "1").found()]
+        return [*Answered(project, n, "sheet").found()]
 
     variant = catalogue.read("press")
     project = Project(variant)
@@ -160,14 +162,14 @@ def test_only_the_same_answers_find_what_was_kept(place, monkeypatch):
     others = [Project(variant.model_copy(update={"title_block": block})),
               Project(catalogue.read("lugansk/shaper")), Project(catalogue.read("press"))]  # fmt: skip
     variant.ask([("title_block",), ("sheets",), ("source", "crank", "length")])
-    Answered(project, 1, "sheet", "1").keep(b"made")
+    Answered(project, 1, "sheet").keep(b"made")
     assert found(project) == found(others[-1]) == [b"made"]
     assert ("sheets",) in others[-1].variant.asked  # what is used of it later depends on that, too
     assert [found(project, 2), *map(found, others[:-1])] == [[]] * 3
-    assert [*Answered(project, 1, "sheet", "2").found()] == [*Answered(project, 1, "arrangement", "1").found()] == []
+    assert [*Answered(project, 1, "arrangement").found()] == []
     with words.on_paper("uk"):
         assert found(project) == []
-    monkeypatch.setattr(answered, "maker", lambda: "another program")
+    monkeypatch.setattr(composed, "maker", lambda: "another program")
     assert found(project) == []
 
 
@@ -187,8 +189,8 @@ def changed(*pairs):
 ])  # fmt: skip
 def test_what_was_not_asked_for_changes_no_sheet(place, monkeypatch, n, pairs, same_sheet):
     before, after = sheet.composed(changed(), n), changed(pairs)
-    composed, made = composing.composed, []
-    monkeypatch.setattr(composing, "composed", lambda *what: made.append(what) or composed(*what))
+    compose, made = composing.composed, []
+    monkeypatch.setattr(composing, "composed", lambda *what: made.append(what) or compose(*what))
     found = sheet.composed(after, n)
     assert (made == []) == same_sheet
     with kept.unused():
@@ -206,13 +208,10 @@ def test_loading_imports_nothing_that_draws(place, tmp_path):
     modules = told.stderr.splitlines()[-1].split()
     assert not [m for m in modules if m.startswith(("shapely", "scipy", "tmm_sheets.methods.", "tmm_sheets.mechanism."))]
     assert {m for m in modules if m.startswith("tmm_sheets.sheets.")} == {
-        f"tmm_sheets.sheets.{name}" for name in ("sheet", "composed", "answered")}  # fmt: skip
+        f"tmm_sheets.sheets.{name}" for name in ("sheet", "composed", "views")}  # fmt: skip
 
 
-@pytest.mark.parametrize("data", [
-    b"", b"7", b"[7]", b"[[1]]", b'[["no.view", [0, 0, 1, 1], {}]]', b'[["cams.motion", [0, 0, 1, "x"], {}]]',
-    b'[["kinematics.position_plans", [0, 0, 1], {}]]', b'[["kinematics.position_plans", [0, 0, 1, 1], 7]]',
-    b'[["kinematics.position_plans", [0, 0, 1, 1], {"places": [[0, 0, 1]]}]]', b"[" * 100_000])
+@pytest.mark.parametrize("data", [b"", b"7", b"[7]", b"[" * 100_000, *map(pickle.dumps, ([], {"a": 1}, Path("a")))])
 def test_an_odd_arrangement_counts_as_not_kept(place, monkeypatch, data):
     right = composition.arranged(opened("lugansk/shaper"), 1)
     monkeypatch.setattr(Answered, "found", lambda self: iter([data]))

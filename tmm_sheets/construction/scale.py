@@ -23,6 +23,8 @@ STANDARD = (
     (1, 2), (2, 5), (1, 4), (1, 5), (1, 10), (1, 20), (1, 40), (1, 50), (1, 100),
 )
 """GOST 2.302 scales as (real, drawn) from the largest reduction to the largest enlargement."""
+ENLARGEMENTS = [drawn / real for real, drawn in STANDARD if drawn > real]
+"""How many times the enlargements among them enlarge, rising."""
 
 
 @dataclass(frozen=True)

@@ -164,15 +164,25 @@ def lettered(a: complex, b: complex, offset: float, markup: str, height: float =
     return at + 1j * u * (laid.descent + (PAST + 0.5 if wide else 0.7)), u
 
 
+@dataclass(kw_only=True)
+class ScaleBook:
+    """Where chosen scale factors are kept: the canvas, or whatever asks for them without drawing.
+
+    ``scales`` : scale factor of each drawn plan by its name; ``chosen`` : the names of those that a project file may set
+    """
+
+    scales: dict[str, Any] = field(default_factory=dict)
+    chosen: set[str] = field(default_factory=set)
+
+
 @dataclass
-class Canvas:
+class Canvas(ScaleBook):
     """Collector of the marks of a sheet.
 
     Attributes
     ----------
     of, by : view or construction step of the following marks, and their provenance (see :meth:`tracing`)
     frames : where plans were placed
-    scales, chosen : scale factor of each drawn plan by its name, and the names that a project file may set
     parts, groups : which view the marks belong to, and which of them are one thing to a reader
     dimensions, forms : which marks are dimensions and forms to be filled in
     shortened : texts that were too long for their cell of a form, and what stands there
@@ -185,8 +195,6 @@ class Canvas:
 
     marks: list[Mark] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
-    scales: dict[str, Any] = field(default_factory=dict)
-    chosen: set[str] = field(default_factory=set)
     of: str = ""
     by: Provenance | None = None
     frames: list[PlacedFrame] = field(default_factory=list)

@@ -219,9 +219,8 @@ class InkIndex:
 
 def _is_short(mark: Mark) -> bool:
     """True if a letter would hide a mark of a symbol or hatching: a line or circle no longer than ``SHORT``."""
-    if mark.by is None or mark.by.role not in ("symbol", "hatch"):
-        return False
-    return (isinstance(mark, Line) and abs(mark.b - mark.a) <= SHORT) or (isinstance(mark, Arc) and 2 * mark.radius <= SHORT)
+    return mark.by is not None and mark.by.role in ("symbol", "hatch") and (
+        (isinstance(mark, Line) and abs(mark.b - mark.a) <= SHORT) or (isinstance(mark, Arc) and 2 * mark.radius <= SHORT))
 
 
 def sample(a: Any, b: Any, step: float) -> Points:
@@ -384,15 +383,11 @@ def fills(drawing: Drawing) -> Iterator[tuple[str, float]]:
     """
     for view in {view.box: view for view in reversed(drawing.views)}.values():
         marks = [mark for a, b in view.spans for mark in drawing.marks[a:b] if mark.of != FRAME]
-        z = [_outline(mark) for mark in marks]
+        z = [text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0) for mark in marks]
         if any(not isinstance(mark, Text) for mark in marks) and view.box.width * view.box.height > 0:
             ink, place = Box.around(np.concatenate(z)), view.box
             wide, high = min(ink.x1, place.x1) - max(ink.x0, place.x0), min(ink.y1, place.y1) - max(ink.y0, place.y0)
             yield view.name, max(wide, 0.0) * max(high, 0.0) / (place.width * place.height)
-
-
-def _outline(mark: Mark) -> Points:
-    return text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)
 
 
 def dense(marks: Iterable[Mark], step: float) -> Points:

@@ -273,7 +273,9 @@ class PointNumbers:
             for x in (BESIDE, -wide - BESIDE):
                 for p in (top + complex(x, RIGHT_AT), low + complex(x, -height - RIGHT_AT)):
                     box = Box(p.real, p.imag, p.real + wide, p.imag + height)
-                    if self._stands_clear(box, points) and all(_is_apart(box, other) for other in self._set):
+                    near = Box(box.x0 - WORD, box.y0 - ROWS, box.x1 + WORD, box.y1 + ROWS)
+                    if self._stands_clear(box, points) and all(other.x0 > near.x1 or other.x1 < near.x0 or other.y0 > near.y1
+                                                               or other.y1 < near.y0 for other in self._set):
                         pen.text(p, text, height)
                         self._set.append(box)
                         return True
@@ -287,10 +289,6 @@ class PointNumbers:
         away = self._ink.half[near] + np.where(own, TOUCH, FOREIGN)
         return not len(self._ink.lettering_near(box, ROWS, ROWS)) and not enters(
             a, b - a, box.x0 - away, box.y0 - away, box.x1 + away, box.y1 + away).any()
-
-
-def _is_apart(box: Box, other: Box) -> bool:
-    return other.x0 > box.x1 + WORD or other.x1 < box.x0 - WORD or other.y0 > box.y1 + ROWS or other.y1 < box.y0 - ROWS
 
 
 def _free_places(sheet: _NumbersOnSheet, number: AxisNumber) -> list[_Place]:

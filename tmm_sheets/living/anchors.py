@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.drawing.marks import PlacedFrame
+
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
@@ -64,7 +66,7 @@ class _Frame:
     def __init__(self, record: Mapping[str, Any], plan: Mapping[str, Any], frame: Mapping[str, Any], label: str,
                  marks: list[dict[str, Any]], known: Mapping[str, Any]) -> None:
         self.plan, self.frame, self.label, self.drawn = plan, frame, label, marks
-        self.k = plan["positions"].index(label)
+        self.k, self.turned = plan["positions"].index(label), _turning(frame)
         self.steps = {key: record["steps"][key] for key in known}
         self.places: dict[str, complex | None] = {}
         self.vectors: dict[tuple[str, ...], None] = {}
@@ -77,12 +79,6 @@ class _Frame:
         if step["over"] == "positions" and value is not None:
             value = value[self.k] if self.k < len(value) else None
         return complex(*value) if isinstance(value, list) and len(value) == 2 and None not in value else None
-
-    def turned(self, z: complex) -> complex:
-        """A difference of the plan's points on the sheet, mm."""
-        mu = self.frame["mu"]
-        w = complex(z.real / mu[0], z.imag / mu[1])
-        return exp(1j * self.frame["turn"]) * (w.conjugate() if self.frame["mirror"] else w)
 
     def place(self, key: str) -> complex | None:
         """Where a step's point lies on the sheet, mm; None of what is no point, or none that the page computes."""
@@ -218,7 +214,7 @@ def markers(project: Project, record: Mapping[str, Any], sheet: Mapping[str, Any
             told = {"mark": mark["id"], "of": of}
             if mu and _ascending(points, axis):
                 found.append(told | {"from": frame["origin"], "along": [round(axis.real, 12), round(axis.imag, 12)], "mu": mu})
-            elif passes := len(points) > 2 and list(_passes(project, of, points, _places(sheet, frame))):
+            elif len(passes := list(_passes(project, of, points, _places(record, frame, mark.get("step", ""))))) > 2:
                 found.append(told | {"passes": passes})
     return found
 
@@ -238,15 +234,15 @@ def _scale(project: Project, of: str, frame: Mapping[str, Any]) -> float:
     return float(frame["mu"][0]) if frame["mu"][0] != frame["mu"][1] else 0.0
 
 
-def _passes(project: Project, of: str, points: list[complex], there: Mapping[str, complex]) -> Iterator[list[float]]:
+def _passes(project: Project, of: str, points: list[complex], there: Any) -> Iterator[list[float]]:
     """Angles at which a curve passes the places of the numbered positions, and the numbers of its own points there."""
     if of == "cam":
         turned, whole = project.cam.law.positions, 2 * np.pi
     else:
         turned, whole = project.cycle.turned, float(project.cycle.period)
     last = -1
-    for label, angle in zip(there, turned, strict=False):
-        away = np.abs(np.array(points[last + 1:]) - there[label])
+    for place, angle in zip(there, turned, strict=False):
+        away = np.abs(np.array(points[last + 1:]) - place)
         near = np.flatnonzero(away < ON_CURVE_MM)
         if len(near):
             end = np.searchsorted(near, near[0] + FEW)  # it may come back
@@ -256,14 +252,14 @@ def _passes(project: Project, of: str, points: list[complex], there: Mapping[str
         yield [whole, len(points) - 1]
 
 
-def _places(sheet: Mapping[str, Any], frame: Mapping[str, Any]) -> dict[str, complex]:
-    """Points of the numbered positions in the view of a frame, mm, in order."""
-    own = {f["id"] for f in sheet["frames"] if f["view"] == frame["view"]}
-    there: dict[str, complex] = {}
-    for m in sheet["marks"]:
-        if m.get("frame") in own and m["role"] == "point" and "position" in m:
-            ((kind, shape),) = [(k, v) for k, v in m["geometry"].items() if k in ("circle", "fill")] or [("", None)]
-            if shape is not None:
-                z = complex(*shape["centre"]) if kind == "circle" else complex(*np.mean(shape, axis=0))
-                there.setdefault(m["position"], z)
-    return there
+def _places(record: Mapping[str, Any], frame: Mapping[str, Any], key: str) -> Any:
+    """Points of the numbered positions, complex (n,) mm, of the step that a curve in a frame is drawn through; none of another."""
+    step = record["steps"].get(key.replace("-between/", "/"))
+    if step is None or step["over"] != "positions" or step["kind"] != "point":
+        return []
+    return complex(*frame["origin"]) + _turning(frame)(np.array(step["value"], dtype=float) @ (1, 1j))
+
+
+def _turning(frame: Mapping[str, Any]) -> PlacedFrame:
+    """What makes of differences of a plan's points such of the sheet, mm."""
+    return PlacedFrame(-1, "", "", 0j, frame["mu"], frame["turn"], frame["mirror"])

@@ -114,7 +114,7 @@ def sheet(asked: Mapping[str, str], say: Say) -> Message:
     from tmm_sheets.sheets import sheet as sheets
 
     found = opened(asked)
-    return {"svg": svg.render(sheets.compose(found, sheet_number(asked, found))).decode()}
+    return {"svg": svg.render(sheets.composed(found, sheet_number(asked, found)).drawing).decode()}
 
 
 def living(asked: Mapping[str, str], say: Say) -> Message:
@@ -268,7 +268,7 @@ def _picture(project: Project, n: int, path: Path, told: Callable[[str], None]) 
     report = image_report(project.variant.project.name, n, path, e.found, e.findings, e.extra, PENCIL, e.notes, e.readings, e.built)
     theirs = overlay.piece(e.found.ink, e.found.level, PAPER, PIXELS)
     return _found(report) | {"theirs": _inline("image/png", theirs), "sheet": n,
-                             "ours": _inline("image/svg+xml", svg.render(sheet.compose(project, n)))}
+                             "ours": _inline("image/svg+xml", svg.render(sheet.composed(project, n).drawing))}
 
 
 def _drawing(project: Project, n: int | None, path: Path, told: Callable[[str], None]) -> Message:

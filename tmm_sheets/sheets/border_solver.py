@@ -24,7 +24,8 @@ import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY
-from tmm_sheets.sheets.player import PlanFrame, ScaleBook, extent, fit_frame, needed
+from tmm_sheets.drawing.canvas import ScaleBook
+from tmm_sheets.sheets.player import PlanFrame, extent, fit_frame, needed
 from tmm_sheets.words import Remark, marked
 
 if TYPE_CHECKING:
@@ -147,12 +148,11 @@ class Need:
 class BorderNode:
     """Several parts along x (``axis`` 0) or downwards (1) with ``gap`` between them, or a view.
 
-    Of a view: its ``need``, its number ``leaf``, the ``area`` that its arrangement means it to have. As long as no border in it
+    Of a view: its ``need``, the ``area`` that its arrangement means it to have. As long as no border in it
     moves: what the places cost in which it was ``tried``, and in which by which steps it was found to be ``still``.
     """
 
     need: Need | None = None
-    leaf: int = -1
     area: float = 1.0
     axis: int = 0
     children: list[BorderNode] = field(default_factory=list)
@@ -175,12 +175,6 @@ class BorderNode:
     def leaves(self) -> Iterator[BorderNode]:
         """The views in it."""
         return (node for node in self.every() if node.need is not None)
-
-    def parts(self, box: Box) -> list[Box]:
-        """Places of its views in a rectangle, in turn."""
-        for number, node in enumerate(self.leaves()):
-            node.leaf = number
-        return list(self.places(box).values())
 
     def cost(self, width: float, height: float, most: float = inf) -> float:
         """What the places of its views cost: more, the less of what it is meant to have each of them fills.
@@ -254,14 +248,14 @@ class BorderNode:
         self.shares[i:i + 2] = best
         return best is not now
 
-    def places(self, box: Box) -> dict[int, Box]:
-        """Place of each view, its borders at whole millimetres."""
+    def places(self, box: Box) -> list[Box]:
+        """Places of its views in turn, their borders at whole millimetres."""
         if self.need is not None:
-            return {self.leaf: Box(*(float(round(x)) for x in box))}
-        found, at = dict[int, Box](), box.y1 if self.axis else box.x0
+            return [Box(*(float(round(x)) for x in box))]
+        found, at = list[Box](), box.y1 if self.axis else box.x0
         free = (box.height if self.axis else box.width) - self.gap * (len(self.children) - 1)
         for child, size in zip(self.children, (share * free for share in self.shares), strict=True):
-            found |= child.places(Box(box.x0, at - size, box.x1, at) if self.axis else Box(at, box.y0, at + size, box.y1))
+            found += child.places(Box(box.x0, at - size, box.x1, at) if self.axis else Box(at, box.y0, at + size, box.y1))
             at += -(size + self.gap) if self.axis else size + self.gap
         return found
 
@@ -309,12 +303,12 @@ class FigureNode(BorderNode):
         found = self.tried.get((width, height)) or self._best(width, height, *self.children[0].priced(width, height))
         return found[0], found[1]
 
-    def places(self, box: Box) -> dict[int, Box]:
+    def places(self, box: Box) -> list[Box]:
         """Place of the figure, and of a text the whole width under it."""
         _, _, wide, high = self._best(box.width, box.height, *self.children[0].priced(box.width, box.height))
         found = self.children[0].places(box._replace(x1=box.x1 - wide, y0=box.y0 + high))
         for text in self.children[1:]:
-            found |= text.places(box._replace(y1=box.y0 + high - UNDER))
+            found += text.places(box._replace(y1=box.y0 + high - UNDER))
         return found
 
     def _best(self, width: float, height: float, whole: float, lacks: float) -> tuple[float, float, float, float]:
@@ -340,8 +334,8 @@ class FigureNode(BorderNode):
         return best
 
 
-def solve(tree: BorderNode, box: Box) -> dict[int, Box]:
-    """Places of the views of a tree in a rectangle, by their numbers."""
+def solve(tree: BorderNode, box: Box) -> list[Box]:
+    """Places of the views of a tree in a rectangle, in turn."""
     nodes, found = list(tree.every()), list[tuple[float, list[list[float]]]]()
     begin = [node.shares for node in nodes]
     for ladder in STEPS:

@@ -1,16 +1,43 @@
-"""A finished sheet with what is worth telling about it."""
+"""A finished sheet with what is worth telling about it, and how it is kept for the next time."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+import pickle
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from io import BytesIO
 from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
+import numpy as np
+
+from tmm_sheets import kept, words
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import MarkGroup, Part
-from tmm_sheets.drawing.marks import Drawing, Mark, PlacedFrame
-from tmm_sheets.drawing.text_layout import Crowded
-from tmm_sheets.words import Remark, marked, tell
+from tmm_sheets.drawing.marks import (
+    Arc,
+    Box,
+    Dimension,
+    Drawing,
+    Fill,
+    Form,
+    FormField,
+    Line,
+    Mark,
+    PlacedFrame,
+    Polyline,
+    Provenance,
+    Text,
+    View,
+)
+from tmm_sheets.drawing.text_layout import Crowded, Shortened
+from tmm_sheets.program import fingerprint, maker
+from tmm_sheets.sheets.views import ViewPlace
+from tmm_sheets.words import CatalogueText, Remark, marked, tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
 
 OVER = {
     "": marked('view "{title}" leaves its place by {by:.1f} mm {side}'),
@@ -71,3 +98,83 @@ class Composed:
     def marks(self) -> tuple[Mark, ...]:
         """All marks of the drawing."""
         return self.drawing.marks
+
+
+# --- how it is kept ---------------------------------------------------------------------------------------------------------
+
+
+T = TypeVar("T")
+NONE = np.array([])
+READ = {(one.__module__, one.__name__): one for one in cast("tuple[Any, ...]", (
+    complex, np.ndarray, np.dtype, NONE.__reduce__()[0], NONE.__reduce_ex__(5)[0], np.float64().__reduce__()[0],
+    Arc, Box, Composed, CatalogueText, Crowded, Dimension, Drawing, Fill, Form, FormField, Leaving, Line, MarkGroup, Part,
+    PlacedFrame, Polyline, Provenance, Remark, Scale, Shortened, Text, View, ViewPlace))}
+"""What a sheet and its arrangement consist of, by module and name; the first make numbers and arrays."""
+
+
+class _Reader(pickle.Unpickler):
+    """Of what is kept nothing is believed but what a sheet consists of."""
+
+    def find_class(self, module: str, name: str) -> Any:
+        """A class, or what makes an array."""
+        return READ[module, name]
+
+
+def stored(made: Composed | tuple[ViewPlace, ...]) -> bytes:
+    """The bytes of a sheet, or of the views of its arrangement."""
+    return pickle.dumps(made, pickle.HIGHEST_PROTOCOL)
+
+
+def loaded(data: bytes, kind: type[T]) -> T | None:
+    """What is kept of a kind in these bytes; None when they are none."""
+    file = BytesIO(data)
+    try:
+        found = _Reader(file).load()
+    except Exception:  # other bytes may ask for anything
+        return None
+    return found if isinstance(found, kind) and file.tell() == len(data) else None
+
+
+WAYS = 8
+"""Sets of questions that are remembered of a thing: mechanisms with and without loads, parts made in another order."""
+
+Questions = tuple[tuple[str | int, ...], ...]
+"""What a project file was asked: ``Variant.asked``."""
+
+
+class Answered:
+    """What is kept as a thing of some ``kind`` of sheet ``n`` (from 1) for every file that gives the same answers.
+
+    Another length leaves the sheets of the gears as they are: what was asked of a file while something was made is what it
+    depends on, and on the program that made it.
+    """
+
+    def __init__(self, project: Project, n: int, kind: str) -> None:
+        self.variant = project.variant
+        self._about = fingerprint(kind, maker(), words.paper(), words.reader(), project.sheets[n - 1], str(n)) \
+            if kept.folder() is not None and self.variant.content else ""
+        before = kept.read(self._about) if self._about else None
+        self._known: list[Questions] = kept.taken(before, lambda tree: [tuple(map(tuple, questions)) for questions in tree]) or []
+
+    def found(self) -> Iterator[bytes]:
+        """The bytes kept for the same answers, those of the latest questions first; these count as asked of the file."""
+        for questions in self._known:
+            try:
+                data = kept.read(self._name(questions))
+            except (AttributeError, TypeError, ValueError):  # nothing that a file can be asked
+                continue
+            if data is not None:
+                self.variant.ask(questions)
+                yield data
+
+    def keep(self, data: bytes) -> None:
+        """Keep what was made of the answers that have been asked for so far."""
+        if self._about:
+            questions = self.variant.asked
+            kept.write(self._name(questions), data)
+            if questions not in self._known:
+                kept.write(self._about, json.dumps([questions, *self._known][:WAYS]).encode())
+
+    def _name(self, questions: Questions) -> str:
+        """What a thing is kept under: the questions that led to it and the answers of the project file."""
+        return fingerprint(self._about, *(part for asked in questions for part in (repr(asked), self.variant.answer(asked))))

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from itertools import accumulate, compress, pairwise
 from math import inf
 from typing import TYPE_CHECKING
@@ -18,7 +17,7 @@ from tmm_sheets.drawing.canvas import Canvas, Label, Part
 from tmm_sheets.drawing.ink import polyline_inside
 from tmm_sheets.drawing.ink_index import dense
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Mark, Points, Polyline, Text, View, flat
+from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Mark, Polyline, Text, View, flat
 from tmm_sheets.drawing.paper import A1
 from tmm_sheets.drawing.placing import place
 from tmm_sheets.drawing.text_layout import Shortened, bounds_of, text_box, text_boxes
@@ -47,19 +46,24 @@ def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:
     view to view; nothing may cross the frame.
     """
     found: dict[tuple[str, Box], Leaving] = {}
-    views = _boxes_of_views(canvas)
+    # The view each part belongs to: the last part that began without a title.
+    own_boxes = (None if part.title else part.box for part in canvas.parts)
+    views = [*accumulate(own_boxes, lambda last, own: own or last, initial=Box(0.0, 0.0, 0.0, 0.0))][1:]
     titles = {part.box: part.title for part in reversed(canvas.parts) if part.title}
     rectangles = rectangles_of(canvas.marks)
     for k, (lines, labels) in enumerate(_ink(canvas)):
-        part = canvas.parts[k]
+        part, view, out = canvas.parts[k], views[k], list[Departure]()
         if part.draw in ("title block", "labels"):
             continue
-        beside = [other.box for other, v in zip(canvas.parts, views, strict=True)
-                  if v is views[k] and other.title and _apart(other.box, part.box)]
-        bounds = _Bounds(canvas.marks, rectangles, part.box, views[k], frame, title_block)
+        x0, y0, x1, y1 = part.box
+        beside = [other.box for other, v in zip(canvas.parts, views, strict=True) if v is view and other.title and (
+            other.box.x1 <= x0 or x1 <= other.box.x0 or other.box.y1 <= y0 or y1 <= other.box.y0)]
         # What stands anywhere has free paper about it: its letters are led from there.
         anywhere = part.draw in VIEWS and (VIEWS[part.draw].near or VIEWS[part.draw].stands == "anywhere")
-        out = [*bounds.left_by(lines, TOUCH, beside), *bounds.left_by(labels, inf if anywhere else BESIDE, [])]
+        for some, slack, kept_free in ((lines, TOUCH, beside), (labels, inf if anywhere else BESIDE, [])):
+            beyond = np.logical_or.reduce((rectangles[some] - part.box) * (1, 1, -1, -1) < 0, axis=1)
+            out += filter(None, (_departure(canvas.marks[n], part.box, view, slack, kept_free, frame, title_block)
+                                 for n in compress(some, beyond)))
         if out:
             # What is drawn later in the place of a titled part is one view with it.
             plain = re.sub(r"[_^{}]", "", part.title or titles.get(part.box) or part.draw)  # without marks of lettering
@@ -88,12 +92,6 @@ def rectangles_of(marks: Sequence[Mark]) -> NDArray[np.float64]:
     return found
 
 
-def _boxes_of_views(canvas: Canvas) -> list[Box]:
-    """Box of the view each part belongs to: that of the last part that began without a title."""
-    boxes = (None if part.title else part.box for part in canvas.parts)
-    return [*accumulate(boxes, lambda last, own: own or last, initial=Box(0.0, 0.0, 0.0, 0.0))][1:]
-
-
 def _ink(canvas: Canvas) -> list[tuple[list[int], list[int]]]:
     """Numbers of the lines and labels of every part; labels are set when all views are drawn, without their leader lines.
 
@@ -109,10 +107,6 @@ def _ink(canvas: Canvas) -> list[tuple[list[int], list[int]]]:
     return found
 
 
-def _apart(one: Box, other: Box) -> bool:
-    return one.x1 <= other.x0 or other.x1 <= one.x0 or one.y1 <= other.y0 or other.y1 <= one.y0
-
-
 def _outside(own: Box, box: Box) -> tuple[float, str]:
     """How far the rectangle round a mark comes out of a box, and on which side: the first of the farthest."""
     out = (box.x0 - own.x0, box.y0 - own.y0, own.x1 - box.x1, own.y1 - box.y1)
@@ -124,50 +118,25 @@ Departure = tuple[float, str, str]
 """How far a mark leaves its place, mm, on which side, and what it comes over there."""
 
 
-@dataclass(frozen=True)
-class _Bounds:
-    """What the marks of a part are to stay in, and the title block they are to stay out of; ``rectangles`` of all marks."""
-
-    marks: Sequence[Mark]
-    rectangles: NDArray[np.float64]
-    box: Box
-    view: Box
-    frame: Box
-    title_block: Box
-
-    def left_by(self, numbers: Sequence[int], slack: float, beside: list[Box]) -> Iterator[Departure]:
-        """Departures of those of some marks that do not keep their place."""
-        out_of_box = (self.rectangles[numbers] - self.box) * (1, 1, -1, -1) < 0
-        for mark in (self.marks[n] for n in compress(numbers, np.logical_or.reduce(out_of_box, axis=1))):
-            p = text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)
-            own = Box.around(p)
-            ties = not isinstance(mark, Text) and mark.style == TIE
-            out = self._across(p, own) or (None if ties else self._beyond(p, own, slack, beside))
-            if out is not None:
-                yield out
-
-    def _beyond(self, p: Points, own: Box, slack: float, beside: list[Box]) -> Departure | None:
-        """How far a mark leaves its view, or comes into the part beside its own."""
-        by, side = _outside(own, self.view)
-        if by > slack:
-            return by, side, ""
-        by, side = _outside(own, self.box)
-        if by > slack and any(polyline_inside(other.inset(slack), p) for other in beside):
-            return by, side, ", into the one beside it"
+def _departure(mark: Mark, box: Box, view: Box, slack: float, beside: list[Box], frame: Box, title_block: Box) -> Departure | None:
+    """How far a mark crosses the frame or comes into the title block; else how far it leaves its view, or comes into one beside."""
+    p = text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)
+    own = Box.around(p)
+    by, side = _outside(own, frame)
+    if by > 0:
+        return by, side, ", over the frame"
+    depths = [min(float(q.real.max()) - title_block.x0, title_block.y1 - float(q.imag.min()))
+              for q in polyline_inside(title_block, p)]
+    if max(depths, default=0.0) > 0:
+        return max(depths), "at the bottom", ", into the title block"
+    if not isinstance(mark, Text) and mark.style == TIE:
         return None
-
-    def _across(self, p: Points, own: Box) -> Departure | None:
-        """How far a mark crosses the frame, or comes into the title block."""
-        by, side = _outside(own, self.frame)
-        if by > 0:
-            return by, side, ", over the frame"
-        block = self.title_block
-        inside = polyline_inside(block, p)
-        if inside:
-            depth = max(min(float(q.real.max()) - block.x0, block.y1 - float(q.imag.min())) for q in inside)
-            if depth > 0:
-                return depth, "at the bottom", ", into the title block"
-        return None
+    by, side = _outside(own, view)
+    if by > slack:
+        return by, side, ""
+    by, side = _outside(own, box)
+    return (by, side, ", into the one beside it") if by > slack and any(
+        polyline_inside(other.inset(slack), p) for other in beside) else None
 
 
 def _scales(canvas: Canvas, k: int) -> tuple[tuple[str, float], ...]:

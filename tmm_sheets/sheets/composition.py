@@ -6,19 +6,16 @@ can be read is told by ``check`` and ``build``.
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from tmm_sheets import kept
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import CURVE, MAIN, POLE, TOOTH, Scale
+from tmm_sheets.drawing.canvas import ScaleBook
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.sheets.answered import Answered
 from tmm_sheets.sheets.border_solver import (
     CRANK,
     GAP,
@@ -34,6 +31,7 @@ from tmm_sheets.sheets.border_solver import (
     risen,
     solve,
 )
+from tmm_sheets.sheets.composed import Answered, loaded, stored
 from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.views import Arrangement, ViewKind, ViewPlace, arrangement, function
 from tmm_sheets.words import Remark, marked
@@ -43,8 +41,6 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.project import Project
 
-FORM = "8"
-"""Number of the form in which arrangements are kept, another one for every change of it."""
 TITLE_BLOCK = Box(648.0, 8.0, 832.0, 61.0)
 """Place of the title block among the views."""
 DESIGNATION = Box(20.0, 573.0, 92.0, 589.0)
@@ -65,9 +61,9 @@ def arranged(project: Project, n: int) -> Arrangement:
 
 def _arranged(project: Project, n: int) -> Arrangement:
     plan = _with_all_groups(project, arrangement(project.sheets[n - 1]).fitted(project.parts))
-    before = Answered(project, n, "arrangement", FORM)
+    before = Answered(project, n, "arrangement")
     for data in before.found():
-        if (views := kept.taken(data, lambda rows: tuple(_loaded(*row) for row in rows))) is not None:
+        if (views := loaded(data, tuple)) is not None:
             return replace(plan, views=views)
     if any(view.needs == "forces" for view in plan.views):
         project.check_forces()
@@ -87,17 +83,9 @@ def _arranged(project: Project, n: int) -> Arrangement:
     if not found:
         return as_written
     taken = min(found, key=lambda solved: round(solved[0], 3))[1]
-    taken = replace(taken, views=tuple(replace(view, others={}) for view in taken.views))  # as what is kept of it
-    before.keep(json.dumps([[view.draw, view.box, view.options] for view in taken.views]).encode())
+    taken = replace(taken, views=tuple(replace(view, others={}, known={}) for view in taken.views))
+    before.keep(stored(taken.views))
     return taken
-
-
-def _loaded(draw: str, box: Sequence[float], options: dict[str, Any]) -> ViewPlace:
-    """A view in its place as it was kept; the places of its parts are boxes."""
-    own = {"places": [Box(*map(float, place)) for place in options["places"]]} if "places" in options else {}
-    found = ViewPlace(draw, Box(*map(float, box)), {**options, **own})
-    _ = found.kind  # a view that there is
-    return found
 
 
 def _with_all_groups(project: Project, plan: Arrangement) -> Arrangement:
@@ -146,8 +134,6 @@ class _Way:
         tree = cut([*boxes, TITLE_BLOCK], [*columns, fixed(TITLE_BLOCK)])
         if tree is None:
             return None
-        for number, leaf in enumerate(tree.leaves()):
-            leaf.leaf = number
         whole = _around([view.box for view in arrangement(self.plan.name).views])
         room = Box(whole.x0, TITLE_BLOCK.y0, TITLE_BLOCK.x1, whole.y1)
         views = [part for parts in self.parts for part in parts]
@@ -158,9 +144,9 @@ class _Way:
                 node.need, node.tried = replace(node.need, most=(min(node.need.most[0], view.box.width), node.need.most[1])), {}
             if node.need is not None and view.kind.place and _designated(view.box):
                 node.need, node.tried = replace(node.need, covered=max(room.y1 - DESIGNATION.y0, 0.0)), {}
-        found = solve(tree, room)
+        found = dict(zip(map(id, tree.leaves()), solve(tree, room), strict=True))
         # A view that tells no need has to be where its box is, up to rounding: then it stays just there.
-        moved = (zip(view.box, found[node.leaf], strict=True) for view, node in views if not view.kind.place)
+        moved = (zip(view.box, found[id(node)], strict=True) for view, node in views if not view.kind.place)
         if any(abs(a - b) > 3.0 for sides in moved for a, b in sides):
             return None
         placed = replace(self.plan, views=tuple(_placed(view, node, found) for view, node in views))
@@ -192,7 +178,7 @@ def _placed(view: ViewPlace, node: BorderNode, found: dict[int, Box]) -> ViewPla
     """A view in its new place; one of several parts with the places of these as its option ``places``."""
     if not view.kind.place:
         return view
-    places = [found[leaf.leaf] for leaf in node.leaves()]
+    places = [found[id(leaf)] for leaf in node.leaves()]
     parts = [box._replace(y1=min(box.y1, DESIGNATION.y0)) if _designated(box) else box for box in places]
     return replace(view, box=_around(parts), options={**view.options, "places": parts} if len(parts) > 1 else view.options)
 
@@ -265,7 +251,7 @@ def scales(project: Project, parts: set[str]) -> dict[str, tuple[Scale, int]]:
     if len(project.cycle.drawn) > kinematic_frames.MOST:
         return found  # as many plans fit on no sheet
     for n in range(1, len(project.sheets) + 1):
-        kept = SimpleNamespace(scales={}, chosen=set())
+        kept = ScaleBook()
         for view in placed_where(project, n, lambda kind: kind.scale):
             if view.kind.plan in parts:
                 function(view.kind.scale)(project, kept, view.box, view.options)
@@ -337,11 +323,6 @@ def _apart(project: Project, n: int, view: ViewPlace, small: Measured) -> str | 
     return ", ".join(f'"{name}"' for name in names) if max(sizes, default=0.0) >= small.least * (1 - 1e-6) else None
 
 
-def _book() -> Any:
-    """A book of scale factors for one question: nothing is drawn."""
-    return SimpleNamespace(scales={}, chosen=set())
-
-
 def _graph(quantity: str) -> Remark:
     return Remark(marked("the graph of {quantity}"), {"quantity": quantity})
 
@@ -351,14 +332,14 @@ def _graph(quantity: str) -> Remark:
 
 def positions(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
     """The crank beside the other links."""
-    frame = kinematic_frames.positions(project, _book(), view.box, view.options)
+    frame = kinematic_frames.positions(project, ScaleBook(), view.box, view.options)
     yield Measured(Remark(CRANK.what), float(frame.scale.mm(2 * project.mechanism.crank.length)), CRANK.least,
                    marked("leave out points far from the crank"))
 
 
 def velocities(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
     """The largest velocity plan and the smallest: what is shown once more, enlarged, is but one of them."""
-    layout, plan = kinematic_frames.velocities(project, _book(), view.box, view.options), project.study.velocities.plan
+    layout, plan = kinematic_frames.velocities(project, ScaleBook(), view.box, view.options), project.study.velocities.plan
     for floor, size in ((VECTOR, layout.longest(plan)), (LETTERED, min(layout.sizes(plan).values()))):
         yield Measured(Remark(floor.what), size, floor.least, marked("number fewer positions"))
 
@@ -366,7 +347,7 @@ def velocities(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
 def accelerations(project: Project, n: int, view: ViewPlace) -> Iterator[Measured | Remark]:
     """The acceleration plan, and how many of its letters stand together."""
     plan, k, scale = project.study.accelerations.plan, project.force_index, kinematic_frames.accelerations(
-        project, _book(), view.box).scale
+        project, ScaleBook(), view.box).scale
     yield Measured(Remark(VECTOR.what), float(scale.mm(kinematic_frames.longest(plan, [k]))), VECTOR.least,
                    marked("take another force_position"))
     letters = kinematic_frames.crowd(plan, k, scale.mu)
@@ -442,5 +423,5 @@ def _among_forces(project: Project, what: Remark, figure: Figure, place: Box) ->
     What is small beside its own forces and their arms, blocks in a slot or a lever in a dead position, is so at any scale factor.
     """
     if figure.size > LINKS * figure.whole:
-        scale = figure.frame(project, _book(), place).scale
+        scale = figure.frame(project, ScaleBook(), place).scale
         yield Measured(what, float(scale.mm(figure.size)), APART * figure.forces, forces=figure.forces)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import ceil, floor, log10
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale, fit_standard, handy
 from tmm_sheets.construction.step import Helper, Plan, Step, value_at
-from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.canvas import Canvas, ScaleBook
 from tmm_sheets.drawing.marks import PlacedFrame, Role
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number, of_reader, plain
@@ -49,16 +49,6 @@ def once(find: Callable[Concatenate[S, P], T]) -> Callable[Concatenate[S, P], T]
         return found
 
     return known
-
-
-class ScaleBook(Protocol):
-    """Where chosen scale factors are kept: the canvas, or whatever asks for them without drawing.
-
-    ``chosen`` are the names of those that a project file may set.
-    """
-
-    scales: dict[str, Any]
-    chosen: set[str]
 
 
 @dataclass(frozen=True)

@@ -71,12 +71,12 @@ def test_what_is_drawn_or_found_no_room_is_not_asked_again():
     canvas.parts.append(canvas.parts[part])
     canvas.labels[:] = [label._replace(part=len(canvas.parts) - 1) if label in below else label for label in canvas.labels]
     first, second = details.crowds(canvas, ())
-    assert details.nth_dense_place(None, canvas, {"nth": 1}) == first
-    assert details.nth_dense_place(None, canvas, {"nth": 2}) == second
+    assert details.nth_dense_place(None, canvas, {"nth": 1}) == [first]
+    assert details.nth_dense_place(None, canvas, {"nth": 2}) == [second]
     canvas.begin(PLACE, "", details.VIEW)
     details.dense(None, canvas, PLACE, {"nth": 1})
-    assert details.nth_dense_place(None, canvas, {"nth": 2}).centre == second.centre
-    assert details.nth_dense_place(None, canvas, {"nth": 3}) is None
+    assert details.nth_dense_place(None, canvas, {"nth": 2})[0].centre == second.centre
+    assert details.nth_dense_place(None, canvas, {"nth": 3}) == []
 
 
 def test_letters_go_into_the_detail_and_its_lines_are_the_levers_enlarged():

@@ -216,13 +216,13 @@ FEW = 100
 
 def files_written(bench: Bench) -> None:
     """Every format with the smallest and the largest sheet of the shaper, without errors: there is no truth for them."""
-    from tmm_sheets.sheets.sheet import compose
+    from tmm_sheets.sheets.sheet import composed
 
     project = Project(catalogue.read("lugansk/cam_flat" if bench.quick else "lugansk/shaper"))
     drawings: list[Drawing] = []
     for n in range(1, len(project.sheets) + 1):
         bench.say(f"sheet {n}")
-        drawing = compose(project, n)
+        drawing = composed(project, n).drawing
         drawings.append(Drawing(drawing.width, drawing.height, drawing.title, drawing.marks[:FEW]) if bench.quick else drawing)
     drawings.sort(key=lambda d: len(d.marks))
     for form in ENDINGS:

@@ -22,7 +22,7 @@ from tmm_sheets.drawing.text_layout import needs, wrapped
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.border_solver import BorderNode, Need, leaf
 from tmm_sheets.sheets.components import listed
-from tmm_sheets.sheets.player import OVER, PlayerStage, placed, play
+from tmm_sheets.sheets.player import OVER, PlayerStage, placed, play, together
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -229,17 +229,14 @@ def _auxiliary_circle(s: PlayerStage, m: FollowerMotion) -> None:
         radius = float(abs(at[0] - centre))
         radii[name] = radius
         s.pen(name, "construction").circle(centre, radius, "thin")
-        shown: list[complex] = []
+        said = {same[0]: ", ".join(m.law.labels[first + j] for j in same) for same in together(at, 0.5)}
         for k, p in enumerate(at):
             play(s, [m.dds[first + k]])
-            if any(abs(p - q) < 0.5 for q in shown):
-                continue
-            shown.append(p)
-            s.line(m.circle[first + k], centre, p)
-            s.dot(m.circle[first + k], 0.5, "main", p)
-            same = [m.law.labels[first + j] for j in range(half) if abs(at[j] - p) < 0.5]
-            outwards = (p - centre) / radius
-            canvas.label(p, ", ".join(same), -outwards if radius >= largest - 1e-9 else outwards, 2.5, 0.5, leader=False)
+            if k in said:
+                s.line(m.circle[first + k], centre, p)
+                s.dot(m.circle[first + k], 0.5, "main", p)
+                outwards = (p - centre) / radius
+                canvas.label(p, said[k], -outwards if radius >= largest - 1e-9 else outwards, 2.5, 0.5, leader=False)
     reach = largest + BEYOND
     pen = s.pen("M", "axis")
     pen.line(centre - reach, centre + reach, "centre")

@@ -15,7 +15,7 @@ from tmm_sheets.drawing.canvas import Canvas, lettered
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.text_layout import CLEAR, spread
-from tmm_sheets.sheets.player import PlayerStage
+from tmm_sheets.sheets.player import PlayerStage, together
 
 ALONG = 1.2
 """What is kept free at both sides of a dimension line, mm: no other line may seem to be it."""
@@ -73,13 +73,9 @@ Path = Callable[[float, float], complex]
 
 def at_marks(along: Sequence[float], labels: Sequence[str]) -> list[tuple[int, float, str]]:
     """Different marks in their order along the path: the first of their positions, where they are, the numbers of all of them."""
-    found: list[tuple[int, float, list[str]]] = []
-    for k in sorted(range(len(labels)), key=lambda k: (round(along[k] / SAME), k)):
-        if found and abs(along[k] - found[-1][1]) < SAME:
-            found[-1][2].append(labels[k])
-        else:
-            found.append((k, along[k], [labels[k]]))
-    return [(k, t, ", ".join(names)) for k, t, names in found]
+    order = sorted(range(len(labels)), key=lambda k: (round(along[k] / SAME), k))
+    return [(order[same[0]], along[order[same[0]]], ", ".join(labels[order[i]] for i in same))
+            for same in together([along[k] for k in order], SAME)]
 
 
 def numbered(s: PlayerStage, step: Step, first: int, along: Sequence[float], labels: Sequence[str], path: Path, side: float,

@@ -164,10 +164,9 @@ def energies(project: Project, canvas: Canvas, box: Box, options: graphs.Options
     axis, length, pen = speed.at("O"), s.angle.mm(fw.reduced.period), speed.pen("O", "axis")
     pen.line(axis - 5, axis + length + graphs.OVER, "centre")
     pen.label(axis + length - 10, tr("ω_{1m}"), 1j, height=3.5)
-    k = int(np.argmax(total))
-    canvas.label(g(x[k] + 1j * total[k]), change, 1 + 1j, height=5)
-    k = int(np.argmax(np.abs(np.gradient(own))))
-    canvas.label(g(x[k] + 1j * own[k]), f"{first}, ω_1", 1 - 1j, height=5)
+    for values, steepness, sign, away in ((total, total, change, 1 + 1j), (own, np.abs(np.gradient(own)), f"{first}, ω_1", 1 - 1j)):
+        k = int(np.argmax(steepness))
+        canvas.label(g(x[k] + 1j * values[k]), sign, away, height=5)
     k = int(np.argmax(fw.energy_plan["T_II"].value[1:])) + 1
     if fw.energy_plan["T_II"].value[k]:
         canvas.label(g(complex(points[k].real, (points[k].imag + upper[k]) / 2)), second, 1, height=3.5)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.construction.scale import Scale
+from tmm_sheets.construction.scale import ENLARGEMENTS, Scale
 from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.ink import chord
@@ -51,8 +51,6 @@ ROUND, MANY = 12.0, 6
 """So many labels asked for so near to one of them, mm, are more than can be read beside each other."""
 EDGE = 2.0
 """Distance of the outermost of their anchors from the edge of the detail, mm of the scheme."""
-TIMES = (2.0, 2.5, 4.0, 5.0, 10.0, 20.0, 40.0, 50.0, 100.0)
-"""Enlargements (GOST 2.302)."""
 HEAD = 16.0
 """Height of a detail's title and scale factor, mm."""
 LETTERS = 3.5
@@ -87,7 +85,7 @@ class Dense:
 
     def times(self, half: float) -> float:
         """How many times it can be enlarged in a window of a radius, mm; 0 where that is too small for it."""
-        return max((t for t in TIMES if t * self.reach <= self.filled * half), default=0.0)
+        return max((t for t in ENLARGEMENTS if t * self.reach <= self.filled * half), default=0.0)
 
     def factor(self, half: float) -> Scale:
         """Scale factor of the detail in such a window."""
@@ -104,14 +102,12 @@ class Dense:
 
 def dense_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the ``nth`` detail of a sheet can do with, mm; none where all is read."""
-    found = nth_dense_place(project, canvas, options)
-    return found.sizes() if found is not None else []
+    return [size for found in nth_dense_place(project, canvas, options) for size in found.sizes()]
 
 
 def dense_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[complex, int, list[int]]:
     """What the detail shows, mm of the sheet, the part of its view, and those of the views it could be taken for a detail of."""
-    found = nth_dense_place(project, canvas, options)
-    assert found is not None
+    (found,) = nth_dense_place(project, canvas, options)
     others = {frame.view for frame in whole_polygons(canvas, polygons_of(project))} - {found.part} \
         if isinstance(found, Corner) else ()
     return found.centre, found.part, list(others)
@@ -124,7 +120,7 @@ def with_room(project: Project, view: ViewPlace, node: BorderNode) -> BorderNode
     """
     key = view.draw, view.options.get("group")
     if key not in project.expected:
-        boxes, canvas = node.parts(view.box), Canvas()
+        boxes, canvas = node.places(view.box), Canvas()
         canvas.begin(view.box, "", view.draw)
         # On no sheet: what is told of a view by the scale factors of others would ask for the arrangement that is being made.
         # The equation of the lever is none of what may be enlarged.
@@ -168,8 +164,7 @@ def _beside(node: BorderNode, figure: BorderNode, forms: Sequence[Form]) -> Bord
 
 def dense(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The ``nth`` dense place of a sheet enlarged, and its circle on the view."""
-    found, name = nth_dense_place(project, canvas, options), next_name(canvas)
-    assert found is not None
+    (found,), name = nth_dense_place(project, canvas, options), next_name(canvas)
     window = Box(box.x0, box.y0, box.x1, box.y1 - HEAD)
     half = min(window.width - 2 * found.beside, window.height) / 2
     canvas.title(box, f"{name} ({number(found.times(half))}:1)", str(found.factor(half)))
@@ -187,12 +182,10 @@ def next_name(canvas: Canvas) -> str:
     return NAMES[sum(part.title.split(" ")[0] in NAMES for part in canvas.parts)]
 
 
-def nth_dense_place(project: Project, canvas: Canvas, options: dict[str, Any]) -> Corner | Crowd | None:
-    """The dense place that the ``nth`` detail is of: those before it are drawn, or found no room."""
-    drawn = sum(part.draw == VIEW and bool(part.title) for part in canvas.parts)
-    left = _every(project, canvas)
-    n = int(options.get("nth", 1)) - 1 - drawn
-    return left[n] if n < len(left) else None
+def nth_dense_place(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[Corner | Crowd]:
+    """The dense place that the ``nth`` detail is of, or none: those before it are drawn, or found no room."""
+    n = int(options.get("nth", 1)) - 1 - sum(part.draw == VIEW and bool(part.title) for part in canvas.parts)
+    return _every(project, canvas)[n:n + 1]
 
 
 def _every(project: Project, canvas: Canvas) -> list[Corner | Crowd]:

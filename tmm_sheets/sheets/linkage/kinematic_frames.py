@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from math import inf
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,12 +13,13 @@ from numpy.typing import NDArray
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale, coarser, handy, reach
+from tmm_sheets.drawing.canvas import ScaleBook
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import PlacedFrame, Points
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets.border_solver import CRANK, LETTERED, SHARE, VECTOR, BorderNode, Figure, Need, leaf, rounded_up
 from tmm_sheets.sheets.linkage import link_marks
-from tmm_sheets.sheets.player import SHORTEST, PlanFrame, ScaleBook, extent, once, pick, raised, together
+from tmm_sheets.sheets.player import SHORTEST, PlanFrame, extent, once, pick, raised, together
 from tmm_sheets.words import Remark, marked_n, tell, tell_n, tr
 
 if TYPE_CHECKING:
@@ -429,7 +429,7 @@ def crowd(plan: Plan, i: int, mu: float) -> int:
 
 def left_out(project: Project, view: ViewPlace) -> Iterator[Remark]:
     """What a view leaves out of the velocity plans, and why, for the command line."""
-    layout = velocities(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
+    layout = velocities(project, ScaleBook(), view.box, view.options)
     if layout.every > 1:
         count = len(project.cycle.drawn)
         yield Remark(marked_n("there is no room for {count} velocity plan: one in {every} is drawn",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale, handy, times
+from tmm_sheets.construction.scale import ENLARGEMENTS, Scale, handy, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import SMALLEST, Align, Canvas, Label
 from tmm_sheets.drawing.ink import segment_inside
@@ -27,7 +27,7 @@ from tmm_sheets.words import tr, tr_in
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.model import Mechanism
-    from tmm_sheets.methods.linkage.cycle import Cycle
+    from tmm_sheets.methods.linkage.cycle import Cycle, Strokes
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
 
@@ -60,7 +60,7 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     link_marks.number_links(s, pos)
     _rotations(project, s)
     if cycle.strokes is not None and project.variant.cycle is not None and project.variant.cycle.working:
-        _strokes(project, s)
+        _strokes(project, s, cycle.strokes)
     if options.get("angles"):
         _named_angles(project, s)
     if graph:
@@ -339,14 +339,13 @@ def free_arrows(shape: link_marks.Shape, s: PlayerStage, pos: Positions, busy: P
     return max(places, key=room)
 
 
-def _strokes(project: Project, s: PlayerStage) -> None:
+def _strokes(project: Project, s: PlayerStage, strokes: Strokes) -> None:
     """Working and idle angles of the crank between its dead positions."""
     cycle, c = project.cycle, project.mechanism.crank
-    assert cycle.strokes is not None
     radius = c.length / s.frame.mu[1] + 7.0
     count = project.variant.cycle.working if project.variant.cycle else None
     first = cycle.world(cycle.turned[0])
-    last = cycle.world(cycle.turned[count] if count else cycle.strokes.end)
+    last = cycle.world(cycle.turned[count] if count else strokes.end)
     working, idle = tr_in("angle of the crank", "φ_w"), tr_in("angle of the crank", "φ_i")
     pivot, end = s.at(c.pivot), first + cycle.sense * 2 * pi
     # The sign of the idle angle stands near its beginning: about its middle the links of many positions crowd.
@@ -402,8 +401,7 @@ def _force_graph(project: Project, s: PlayerStage, box: Box, below: bool) -> Non
     rear, edge = (box.x0, box.x1)[::u]
     room = edge - u * (1.5 + letter(ways, 3.5).width)
     # As many times as long as on the plans as it takes to be read (GOST 2.302).
-    stroke, enlargements = abs(b - a), (2.0, 2.5, 4.0, 5.0, 10.0, 20.0, 40.0)
-    enlarged = 1.0 if stroke >= READABLE else next((t for t in enlargements if t * stroke >= READABLE), 50.0)
+    enlarged = next(t for t in (1.0, *ENLARGEMENTS[:-1]) if t * abs(b - a) >= READABLE or t == ENLARGEMENTS[-2])
     start = a if enlarged == 1 else _nearer(rear, (a + b - enlarged * (b - a)) / 2, room - 14.0 * u - enlarged * (b - a))
 
     def along(x: Any) -> Any:
@@ -422,7 +420,7 @@ def _force_graph(project: Project, s: PlayerStage, box: Box, below: bool) -> Non
     for n, text in enumerate(said):
         lower = 6.25 * n if (room - beside) * u >= 0 else 6.25 * (n - len(said) + 1) - 2.5
         canvas.text(complex(_nearer(start, beside, room), high - lower), text, 3.5, outward)
-    drawn = [_over_way(project, s, along, diagram, y0, scale.mu) for diagram in diagrams]
+    drawn = [_over_way(project, s, strokes, along, diagram, y0, scale.mu) for diagram in diagrams]
     for (line, turned), (tried_at, values) in zip(drawn, diagrams, strict=True):
         canvas.tracing("curve", load, "", graph).polyline(line, "curve")
         later = [turned + turn for turn in np.arange(0, cycle.period, 2 * pi) if np.allclose(force.shown(tried_at + turn), values)]
@@ -454,11 +452,10 @@ def _force_graph(project: Project, s: PlayerStage, box: Box, below: bool) -> Non
         canvas.number(complex(x, y0), complex(x + 0.8, y0 + 1.0), text, 2.5, pitch)
 
 
-def _over_way(project: Project, s: PlayerStage, along: Any, diagram: tuple[Any, Any], y0: float, mu: float) -> tuple[Any, Any]:
+def _over_way(project: Project, s: PlayerStage, strokes: Strokes, along: Any, diagram: tuple[Any, Any], y0: float,
+              mu: float) -> tuple[Any, Any]:
     """A diagram of a force over the path, from the axis and back to it, mm, and the angles where it acts, rad."""
     turned, values = diagram
-    strokes = project.cycle.strokes
-    assert strokes is not None
     acting = np.flatnonzero(values)
     xs = along(np.real(s.frame(project.study_at(turned, tuple("" for _ in turned)).positions.points[strokes.output].value)))
     curve = xs[acting] + 1j * (y0 + values[acting] / mu)
@@ -628,8 +625,8 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
 
 SMALL = 30.0
 """Size of the analysed velocity plan among the others, mm, below which it is shown once more, enlarged."""
-ENLARGED = (2.0, 2.5, 4.0, 5.0, 10.0)
-"""Enlargements (GOST 2.302)."""
+ENLARGED = [t for t in ENLARGEMENTS if t <= 10]
+"""Enlargements that a plan has."""
 
 
 def enlarged_velocities_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
@@ -674,8 +671,6 @@ def _need(real: Box, inside: Box) -> float:
 PLANS = "kinematics.position_plans"
 SHARED = 4
 """So many marks that have no number of their own on the plans are a crowd."""
-PATH_ENLARGED = (100.0, 50.0, 40.0, 20.0, 10.0, 5.0, 4.0, 2.5, 2.0)
-"""Enlargements (GOST 2.302), the most welcome first."""
 SHORTEST_PATH, LONGEST_PATH = 60.0, 260.0
 """Length of the path in the view, mm, below which its numbers crowd still, and beyond which it takes too much of a sheet."""
 BEYOND_PATH, BESIDE_PATH, HEAD_PATH = 10.0, 9.0, 16.0
@@ -688,8 +683,8 @@ def enlarged_path_sizes(project: Project, canvas: Canvas, options: dict[str, Any
     if name is None:
         return []
     span, title = _span(project, canvas, name), letter(_title_of_path(name), 5.0).width
-    return [(max(times * span + 2 * BEYOND_PATH, title + 4.0), HEAD_PATH + 2 * BESIDE_PATH + 2.0) for times in PATH_ENLARGED
-            if SHORTEST_PATH <= times * span <= LONGEST_PATH]
+    return [(max(times * span + 2 * BEYOND_PATH, title + 4.0), HEAD_PATH + 2 * BESIDE_PATH + 2.0)
+            for times in reversed(ENLARGEMENTS) if SHORTEST_PATH <= times * span <= LONGEST_PATH]
 
 
 def enlarged_path(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -698,7 +693,7 @@ def enlarged_path(project: Project, canvas: Canvas, box: Box, options: dict[str,
     assert name is not None
     pos, plain = project.study.positions, canvas.scales["positions"]
     span = _span(project, canvas, name)
-    times = next(t for t in PATH_ENLARGED if t * span <= LONGEST_PATH and t * span + 2 * BEYOND_PATH <= box.width + 1e-6)
+    times = next(t for t in reversed(ENLARGEMENTS) if t * span <= LONGEST_PATH and t * span + 2 * BEYOND_PATH <= box.width + 1e-6)
     scale = Scale(plain.symbol, float(f"{plain.mu / times:.6g}"), plain.unit)
     _thin_out(project, canvas, name)
     canvas.title(box, _title_of_path(name), str(scale))

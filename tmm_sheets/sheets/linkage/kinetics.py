@@ -161,7 +161,7 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
                           tell("take an arrangement with the view kinetics.groups, or leave kinetics.group out of it"))
     g = tuple(reversed(m.groups))[nth - 1]
     plans = loaded_plans(project, g.kind.force_plans(g))
-    left, *places = options.get("places") or group_place(project, ViewPlace("kinetics.group", box, options)).parts(box)
+    left, *places = options.get("places") or group_place(project, ViewPlace("kinetics.group", box, options)).places(box)
     _scheme(project, canvas, left, places.pop(0) if moments.of_group(project, g) else None, g, k)
     for line in (*jumps(project, g.links), *([] if plans else [tr("There are no forces in this position")])):
         canvas.note(left, line)
@@ -410,7 +410,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     k, study, c, driver = project.force_index, project.study, project.mechanism.crank, project.driver
     forces, pos = study.forces, study.positions
     plans = loaded_plans(project, [c.link])
-    left, *places = options.get("places") or crank_place(project, ViewPlace("kinetics.crank", box, options)).parts(box)
+    left, *places = options.get("places") or crank_place(project, ViewPlace("kinetics.crank", box, options)).places(box)
     texts = moments.of_crank(project)
     under = places.pop(0) if texts else None
     centre, pins = pos.points[c.pivot], [pos.points[name] for name in link_marks.crank_pins(pos)]
@@ -459,7 +459,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     """Zhukovsky's lever: the velocity plan turned by 90 degrees with every force and its arm."""
     k, lv = project.force_index, project.study.lever
     shown = on_lever(project, k)
-    box, *under = options.get("places") or lever_place(project, ViewPlace("kinetics.lever", box, options)).parts(box)
+    box, *under = options.get("places") or lever_place(project, ViewPlace("kinetics.lever", box, options)).places(box)
     figure = lever_scheme(project, k)
     frame = figure.frame(project, canvas, box)
     plain: Scale | None = canvas.scales.get("velocities")
