@@ -114,8 +114,7 @@ def new(name: str = "mechanism", /, *, language: Language = "", project: Mapping
     BadInput
         with everything that is wrong in the tables.
     """
-    head = {"name": name, "title": name} | dict(project or {})
-    text = edited_text.written({"schema": 1, "project": head} | tables)
+    text = edited_text.written({"schema": 1, "project": {"name": name, "title": name} | dict(project or {})} | tables)
     return Opened(variants.parse(text, f"{name}{catalogue.SUFFIX}"), title_entries.given({}), language)
 
 

@@ -54,8 +54,7 @@ class Box(NamedTuple):
         """The rectangle made smaller on each side; one number means all four sides."""
         b = left if bottom is None else bottom
         r = left if right is None else right
-        t = left if top is None else top
-        return Box(self.x0 + left, self.y0 + b, self.x1 - r, self.y1 - t)
+        return Box(self.x0 + left, self.y0 + b, self.x1 - r, self.y1 - (left if top is None else top))
 
     def moved(self, by: complex) -> Box:
         """The rectangle moved."""

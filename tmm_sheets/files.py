@@ -325,9 +325,8 @@ def refuse_elsewhere(path: Path) -> None:
 
 
 def _unwritable(path: Path, e: OSError) -> Problem:
-    why = reason_of(e)
     return Problem(
-        tell("cannot be written: {why}").format(why=why),
+        tell("cannot be written: {why}").format(why=reason_of(e)),
         str(path),
         hint=tell("choose another place with -o, or make room; neither it nor what belongs to it was written"),
     )

@@ -15,7 +15,9 @@ from typing import Any
 from tmm_sheets.words import decimal_sign, reader
 
 NOISE = 1e-9
-"""Share of the size of its kind below which a number is zero."""
+"""Share of the size of its kind below which a number is zero, and two of them are the same."""
+ROUNDING = 1e-12
+"""Share of its size by which rounding changes a number: where a border is met exactly."""
 
 
 class Sizes:

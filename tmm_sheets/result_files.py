@@ -223,9 +223,7 @@ class Numbers(dict[str, Any]):
     @property
     def columns(self) -> dict[str, Any]:
         """What is told of the positions as columns of as many rows: label, angle, and both projections of a point apart."""
-        if "cycle" not in self.told:
-            return {}
-        return {"label": list(self.told["cycle"]["labels"]), **columns(self.told)}
+        return {} if "cycle" not in self.told else {"label": list(self.told["cycle"]["labels"]), **columns(self.told)}
 
     def frame(self) -> Any:
         """The columns as a DataFrame of pandas, its rows called after the positions.

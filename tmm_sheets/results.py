@@ -326,8 +326,7 @@ def _study(project: Project, phi: tuple[float, ...] | None, positions: int | Non
         cycle = project.cycle
         turned: Any = (project.parts_of_cycle(positions) if positions is not None else
                        cycle.sense * (np.asarray(phi, dtype=float) - cycle.start))
-        labels = tuple(str(i) for i in range(len(turned)))
-        return project.study_at(turned, labels, ""), list(range(len(turned)))
+        return project.study_at(turned, tuple(str(i) for i in range(len(turned))), ""), list(range(len(turned)))
     return None
 @dataclass(frozen=True)
 class Spread(Reported):
@@ -396,7 +395,6 @@ def _forces(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]
 
 def _friction(of: Friction, told: Callable[..., Any]) -> dict[str, Any]:
     """Friction in the pairs: circles and moments of the turning ones, deviations of the sliding ones, powers of all."""
-    assert of.power_plan is not None
     return {
         "approximations": of.power_plan["n"],
         "radii": dict(of.radii),

@@ -151,8 +151,7 @@ class BareValue(NamedTuple):
         match = re.fullmatch(_NUMBER, self.value)
         if match is None:
             return (f'"{self.value}"',)
-        plain = re.sub(r"\s", "", match[2]).replace(",", ".")
-        number = Decimal(match[1] + plain)
+        number = Decimal(match[1] + re.sub(r"\s", "", match[2]).replace(",", "."))
         return (f"{number:f}", *((f'"{(number * 100).normalize():f} %"',) if 0 < number < 1 else ()))
 
     def put(self, text: str, value: str) -> str:

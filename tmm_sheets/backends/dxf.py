@@ -363,8 +363,7 @@ def _stroked(marks: Iterable[Mark], around: DxfFrame, handles: Iterator[int]) ->
         if isinstance(mark, Text):
             texts.append(mark)
         else:
-            solid = bool(line_type(mark.style).pattern)
-            parts.entities.append(entity(mark, next(handles), around.owner, on, solid=solid))
+            parts.entities.append(entity(mark, next(handles), around.owner, on, solid=bool(line_type(mark.style).pattern)))
     parts.entities.append(letter_strokes(texts, around.owner, "TEXT", handles))
     return parts
 

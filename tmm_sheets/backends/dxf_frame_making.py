@@ -97,8 +97,7 @@ def _document(width: float, height: float) -> Document:
     doc.header.custom_vars.append("Author", AUTHOR)
     for style in line_types().values():
         if style.linetype not in doc.linetypes:
-            total = sum(map(abs, style.pattern))
-            doc.linetypes.add(style.linetype, [total, *style.pattern], description=style.name)
+            doc.linetypes.add(style.linetype, [sum(map(abs, style.pattern)), *style.pattern], description=style.name)
     doc.layers.add(PATTERN, color=1, linetype="Continuous", lineweight=0).description = "{description}"
     doc.layers.add(VIEWPORT_LAYER, plot=False)
     _lettering(doc)
@@ -116,8 +115,7 @@ def _document(width: float, height: float) -> Document:
 
 def _lettering(doc: Document) -> None:
     """Add the text style and the dimension style; the header names them too, for programs that look only there."""
-    style = doc.styles.add(STYLE, font=FONT_FILE)
-    style.set_extended_font_data("TMM Sheets B", italic=True)
+    doc.styles.add(STYLE, font=FONT_FILE).set_extended_font_data("TMM Sheets B", italic=True)
     doc.header["$TEXTSTYLE"], doc.header["$TEXTSIZE"] = STYLE, LETTERS
     look = {"dimtxt": LETTERS, "dimasz": 3.5, "dimtsz": 0.0, "dimexo": 0.0, "dimexe": 2.0, "dimgap": 0.7, "dimscale": 1.0,
             "dimlfac": 1.0, "dimdec": 2, "dimdsep": ord(","), "dimtad": 1, "dimtih": 0, "dimtoh": 0, "dimzin": 8}  # fmt: skip

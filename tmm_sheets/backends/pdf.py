@@ -88,8 +88,7 @@ def _layers(page: Canvas) -> dict[str, str]:
     names = {role: f"L{n}" for n, role in enumerate(roles())}
     references = []
     for role, name in names.items():
-        description = roles()[role]["description"]
-        said = pdfdoc.PDFString(tr(description))
+        said = pdfdoc.PDFString(tr(roles()[role]["description"]))
         references.append(page._doc.Reference(pdfdoc.PDFDictionary({"Type": pdfdoc.PDFName("OCG"), "Name": said}), name))
     catalog = page._doc._catalog
     shown = pdfdoc.PDFDictionary({"Order": pdfdoc.PDFArray(references), "ON": pdfdoc.PDFArray(references)})

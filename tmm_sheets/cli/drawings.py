@@ -237,8 +237,7 @@ def run_bench(target: str | None, folder: Path | None, quick: bool, summary: boo
         files.check_folder(folder)
     with Progress() as progress:
         found = records.run(quick, progress.doing)
-    text = (records.summary if summary else records.table)(found)
-    click.echo(text, err=target == "-")
+    click.echo((records.summary if summary else records.table)(found), err=target == "-")
     made: dict[Path, bytes] = {}
     if target == "-":
         click.echo(records.as_json(found))

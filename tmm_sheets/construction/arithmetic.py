@@ -362,6 +362,13 @@ def inner_slopes(h: Any, chord: Any) -> Any:
         return np.where(chord[:-1] * chord[1:] > 0, (w1 + w2) / (w1 / chord[:-1] + w2 / chord[1:]), 0.0)
 
 
+def halved(holds: Callable[[float], bool], low: float, high: float) -> tuple[float, float]:
+    """The neighbouring doubles between which a condition that holds at ``low``, and not at ``high``, ceases to hold."""
+    while low < (middle := (low + high) / 2) < high:
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return low, high
+
+
 def root(f: Callable[[Floats], Floats], low: float, high: float) -> float:
     """Zero of a continuous function (shape (n,) to shape (n,)) between two arguments where its signs differ, to the last bit.
 

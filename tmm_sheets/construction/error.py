@@ -441,10 +441,8 @@ def _takes(step: Step) -> tuple[str, ...]:
     """Kinds of the arguments, those of a curve in its place."""
     if not any(map(_is_curve, step.args)):
         return step.rule.takes
-    found: list[str] = []
-    for i, a in enumerate(step.args):
-        found += _takes(a) if _is_curve(a) else [step.rule.takes[i] if i < len(step.rule.takes) else ""]
-    return tuple(found)
+    return tuple(kind for i, a in enumerate(step.args)
+                 for kind in (_takes(a) if _is_curve(a) else (step.rule.takes[i] if i < len(step.rule.takes) else "",)))
 
 
 def is_numeric(value: Any) -> bool:

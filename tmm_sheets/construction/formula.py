@@ -413,9 +413,7 @@ def _walk(tree: expression.Expression, operands: Sequence[Operand], angle: bool)
     assert isinstance(tree, expression.Operation)
     name = tree.name
     parts = [_walk(p, operands, angle or name in ANGLES) for p in tree.parts]
-    if name in _ARITHMETIC:
-        return _ARITHMETIC[name](parts)
-    return _function(name, parts)
+    return _ARITHMETIC[name](parts) if name in _ARITHMETIC else _function(name, parts)
 
 
 Part = tuple[Node, int]

@@ -289,9 +289,7 @@ class _List:
         return self.real("*", a, self.done("/", self.number(1.0), b))
 
     def _power(self, a: int, b: int, x: float | None, y: float | None) -> int:
-        if y == 2:
-            return self.real("*", a, a)
-        return self.done("^", a, b)
+        return self.real("*", a, a) if y == 2 else self.done("^", a, b)
 
 
 _SIMPLER: dict[str, Callable[..., int]] = {

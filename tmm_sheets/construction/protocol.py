@@ -17,7 +17,7 @@ from tmm_sheets.construction.rules import LINE_LINE, take
 from tmm_sheets.construction.step import Kind, Plan, Step, value_at, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.meanings import meaning_of
-from tmm_sheets.numbers import Sizes, clean, degrees_and_minutes, fixed, number, rounded_angle
+from tmm_sheets.numbers import NOISE, Sizes, clean, degrees_and_minutes, fixed, number, rounded_angle
 from tmm_sheets.words import marked, paper, tr, tr_n
 
 _PERPENDICULAR = {
@@ -246,7 +246,7 @@ def _with_seconds(step: Step, k: int, shown: list[str]) -> str:
     def adds_up(places: int) -> bool:
         values = [rounded_angle(float(value_at(a, k)), places) if i in angles else value_at(a, k) for i, a in enumerate(step.args)]
         found = step.rule.compute(*values)
-        return bool(np.ndim(found)) or abs(float(found) - rounded_angle(value, places)) <= NOTHING
+        return bool(np.ndim(found)) or abs(float(found) - rounded_angle(value, places)) <= NOISE
 
     places = next(filter(adds_up, range(MOST_PLACES + 1)), 0) if angles else 0
     for i in angles:
@@ -256,8 +256,6 @@ def _with_seconds(step: Step, k: int, shown: list[str]) -> str:
 
 MOST_PLACES = 3
 """Places of an angle behind the minutes: two of seconds, one behind the decimal sign."""
-NOTHING = 1e-9
-"""What two angles that are written alike differ by at most, rad."""
 
 
 def _said(value: Any, kind: Kind, to_mm: Callable[[float], float], unit: str, of_sort: float) -> str:
@@ -273,6 +271,4 @@ def _said(value: Any, kind: Kind, to_mm: Callable[[float], float], unit: str, of
         return f"{fixed(abs(value), 1)} {tr('N')}"
     if kind == "angle":
         return f"{fixed(degrees(value) % 360, 1)}°"
-    if kind == "inclination":
-        return f"{fixed(degrees(value), 1)}°"
-    return number(float(np.real(value)), kind=of_sort)
+    return f"{fixed(degrees(value), 1)}°" if kind == "inclination" else number(float(np.real(value)), kind=of_sort)

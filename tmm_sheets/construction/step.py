@@ -272,6 +272,15 @@ class Step:
         """Value at position ``k`` (the value itself when it does not depend on the position)."""
         return value_at(self, k)
 
+    def helpers(self, k: int) -> tuple[Helper, ...]:
+        """Helper lines that the step leaves at position ``k``, in the unit of its plan; none where it cannot be built."""
+        if self.rule.helpers is None:
+            return ()
+        args, value = tuple(value_at(a, k) for a in self.args), self.at(k)
+        if self.rule.gives != "curve" and (np.ndim(value) or np.isnan(value)):
+            return ()
+        return self.rule.helpers(args, value)
+
     def ancestors(self, known: Iterable[int] = ()) -> Iterator[Step]:
         """All steps this one depends on, itself included, arguments before results, each once.
 
@@ -395,8 +404,7 @@ def asked_for(made: Iterable[Any]) -> dict[str, Plan]:
 
 def _same(step: Step, rule: Rule, args: tuple[Any, ...]) -> bool:
     """True for a step that the rule makes of the same steps; numbers follow from these."""
-    made = [a for a in step.args if isinstance(a, Step)]
-    return step.rule is rule and made == [a for a in args if isinstance(a, Step)]
+    return step.rule is rule and [a for a in step.args if isinstance(a, Step)] == [a for a in args if isinstance(a, Step)]
 
 
 class Plan:

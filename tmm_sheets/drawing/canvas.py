@@ -12,7 +12,7 @@ from typing import Any, Literal, NamedTuple, TypeVar, cast
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.drawing.lettering import Lettering, fitted, letter, size_for
+from tmm_sheets.drawing.lettering import SMALLEST as SMALLEST, Lettering, fitted, letter, size_for
 from tmm_sheets.drawing.marks import (
     Arc,
     Box,
@@ -31,8 +31,6 @@ from tmm_sheets.drawing.marks import (
 from tmm_sheets.drawing.text_layout import LEADING, LEAST, TOGETHER, heading, needs, shared
 
 Align = Literal["left", "centre", "right"]
-SMALLEST = 2.5
-"""Least height of letters, mm."""
 ARROW = (5.0, 0.85)
 """Length and half width of an arrow head, mm (GOST 2.307: about 20 degrees)."""
 KEPT_OFF = 4.0
@@ -321,8 +319,7 @@ class Canvas(ScaleBook):
         self.arc(centre, radius, lo + (cut if sense < 0 else 0), hi - (cut if sense > 0 else 0), style)
         tip = centre + rect(radius, end)
         # The head lies along the chord of its own length, so it seems to sit on the arc.
-        u = rect(1, end + sense * (pi / 2 - 0.5 * head / radius))
-        self.arrow_head(tip, u, head, style)
+        self.arrow_head(tip, rect(1, end + sense * (pi / 2 - 0.5 * head / radius)), head, style)
         self._one("arrow", first)
 
     @in_role("hatch")

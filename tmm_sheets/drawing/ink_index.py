@@ -15,12 +15,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.drawing.ink import ROUNDING as ROUNDING
 from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Mark, Points, Polyline, Provenance, Role, Text, flat, run
 from tmm_sheets.drawing.styles import line_types
 from tmm_sheets.drawing.text_layout import bounds_of, text_box, text_boxes
 
-ROUNDING = 1e-6
-"""Margin of a preselection, mm."""
 STRONG = frozenset({"main", "curve", "vector", "axis", "hidden"})
 """Line types that leaders and lettering should not meet."""
 CELL = 0.5

@@ -25,6 +25,8 @@ from tmm_sheets.resources import template
 
 SIZES = (1.8, 2.5, 3.5, 5.0, 7.0, 10.0, 14.0, 20.0)
 """Letter heights of GOST 2.304, mm."""
+SMALLEST = 2.5
+"""Least of them that can be read, mm."""
 PEN = 0.1
 """Width of the pen of type B, in heights of a capital letter."""
 BAR = "\u0305"
@@ -160,9 +162,7 @@ def plain(text: str) -> str:
 
 def index_size(height: float) -> float:
     """Height of an index, mm: the next smaller standard height; 0.7 of a height that is not standard."""
-    if height in SIZES[1:]:
-        return SIZES[SIZES.index(height) - 1]
-    return 0.7 * height
+    return SIZES[SIZES.index(height) - 1] if height in SIZES[1:] else 0.7 * height
 
 
 def fitted(markup: str, room: float, height: float) -> Lettering:
@@ -229,8 +229,7 @@ class _Setter:
         ends = []
         for lift, body in bodies.items():
             lean = slant() * lift
-            end = self.set(body, complex(foot + lean, pen.imag + lift), small)
-            ends.append(end.real - min(lean, _OVERLAP))
+            ends.append(self.set(body, complex(foot + lean, pen.imag + lift), small).real - min(lean, _OVERLAP))
         return i, complex(max(ends), pen.imag)
 
     def body(self, markup: str, i: int) -> tuple[str, int]:
@@ -294,7 +293,7 @@ def letter(markup: str, height: float) -> Lettering:
     return Lettering(max(right), max(top), -min(bottom), tuple(setter.runs), tuple(setter.bars))
 
 
-def size_for(lines: Iterable[str], room: float, height: float, least: float = 2.5) -> float:
+def size_for(lines: Iterable[str], room: float, height: float, least: float = SMALLEST) -> float:
     """Largest standard height up to ``height``, mm, with which no line is wider than ``room``; ``least`` if there is none."""
     texts = list(lines)
     sizes = [size for size in reversed(SIZES) if least <= size <= height]

@@ -130,8 +130,7 @@ class Surroundings:
         leader, foreign = self.leaders[near], ~self.own[near]
         crossed = foreign & (self.strong[near] & crosses(a, b, start, end) | leader & meet(a, b, start, end))
         count = 1 * (parallel & (beside < BESIDE)) + crossed + (LED - 1) * (crossed & leader)
-        met = np.bincount(which, count, len(ends)).astype(int)
-        return met + LED * self.count_unsure(self.first_met(starts, ends))
+        return np.bincount(which, count, len(ends)).astype(int) + LED * self.count_unsure(self.first_met(starts, ends))
 
     def first_met(self, starts: Points, ends: Points) -> Points:
         """Where an eye that comes along each leader meets what is named: at the edge of the head in which the leader ends."""

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.drawing.lettering import SIZES, advance, letter, widened as stretched
+from tmm_sheets.drawing.lettering import SIZES, SMALLEST, advance, letter, widened as stretched
 from tmm_sheets.drawing.marks import Points, Text
 from tmm_sheets.words import tell
 
@@ -149,8 +149,6 @@ NARROWEST = 0.7
 """Least stretch of letters along the line, as CAD programs have it."""
 LEADING = 8.0
 """Distance between the baselines of a title, mm."""
-MIN_TITLE_HEIGHT_MM = 2.5
-"""Height below which a title is not legible, mm."""
 
 
 class Heading(NamedTuple):
@@ -163,7 +161,7 @@ class Heading(NamedTuple):
 
 def heading(text: str, width: float, height: float, most: int = 1) -> Heading:
     """Lay out a title no wider than ``width`` mm on at most ``most`` lines, in letters of ``height`` mm if they fit."""
-    sizes = [size for size in reversed(SIZES) if MIN_TITLE_HEIGHT_MM <= size <= height] or [height]
+    sizes = [size for size in reversed(SIZES) if SMALLEST <= size <= height] or [height]
     for size in sizes:
         broken = [wrapped(text, size, count) for count in range(1, most + 1)]
         shares = [width / max(max(letter(line, size).width for line in lines), 1e-9) for lines in broken]

@@ -122,8 +122,7 @@ class _Lesson:
         for step in self.plan:
             if step.rule is rules.LINE_LINE:
                 for start, along in ((step.args[0], step.args[1]), (step.args[2], step.args[3])):
-                    line = self._line(step, start, along)
-                    stops.insert(self._behind(stops, start), line)
+                    stops.insert(self._behind(stops, start), self._line(step, start, along))
             if (one := self._stop(step)) is not None:
                 if one["kind"] in ("lay", "similar"):
                     one["ends"] = [one["tail"], one["step"]]

@@ -258,8 +258,8 @@ class UnevenCrank:
     def _positions(project: Project) -> dict[str, Any]:
         """Angles turned to the numbered positions, or how many parts each stroke has and how many turns there are."""
         cycle = project.cycle
-        turned = cycle.numbering["φ_п"] if cycle.numbering is not None else None
-        if turned is not None and turned.rule in PARTS:
+        turned = cycle.numbering["φ_п"]
+        if turned.rule in PARTS:
             _, *parts = (int(value_of(x)) for x in turned.args)
             return {"parts": parts if len(parts) > 2 else [*parts, 1]}
         return {"positions": np.asarray(cycle.turned).tolist()}
@@ -334,8 +334,7 @@ class Searches:
 
     def _load(self, number: int, load: Applied, rows: Iterable[Any]) -> dict[str, Any]:
         """A load that follows strokes: its motion, which strokes it acts on, and with which sign."""
-        study, motion, law = self.study, load.motion, load.law
-        assert motion is not None
+        study, law = self.study, load.by_strokes
         tables_of: tuple[ForceTable | MomentTable, ...] = (*self.project.variant.force, *self.project.variant.moment)
         own = next(x for x in tables_of if x.name == load.name)
         tables = own.diagrams()
@@ -343,12 +342,12 @@ class Searches:
         turning = -1.0 if getattr(own, "sense", "") == "clockwise" else 1.0
         times = 1.0 if load.point is not None else turning if load.sign is None else float(load.sign)
         found = _there({"against": against, "times": times, "stroke": own.stroke, "first": own.first,
-                 "always": law.always, "tables": [table is not None for table in tables],  # type: ignore[attr-defined]
+                 "always": law.always, "tables": [table is not None for table in tables],
                  "diagrams": [self._diagram(load, n, len(tables)) for n in range(len(tables))]})
         if load.point is not None:
-            assert motion.path is not None
+            assert law.motion.path is not None
             assert isinstance(own, ForceTable)
-            found |= self._point(load.point) | {"sense": told(complex(motion.path.numbers[0])), "from": own.from_, "to": own.to}
+            found |= self._point(load.point) | {"sense": told(complex(law.motion.path.numbers[0])), "from": own.from_, "to": own.to}
         else:
             found |= {"turns": self._argument(study.positions.directions[load.link], f"direction of {load.link}"),
                       "speed": self._argument(study.velocities.omega[load.link], f"turning of {load.link}"), "sense": turning}
@@ -358,26 +357,25 @@ class Searches:
     @staticmethod
     def _diagram(load: Applied, stroke: int, strokes: int) -> str | None:
         """Name of the diagram of each so-manieth stroke; None where there is none, or one that is the same all along."""
-        assert load.motion is not None
-        of_runs = zip(load.motion.runs, load.law.tables, strict=True)  # type: ignore[attr-defined]
+        of_runs = zip(load.by_strokes.motion.runs, load.by_strokes.tables, strict=True)
         acts = next((table for run, table in of_runs if run.stroke % strokes == stroke and table is not None), None)
         curve = next((d.curve for d in load.diagrams if d.table is acts), None)
         return name_of(drawn_through(curve)) if isinstance(curve, Step) else None
 
     def _take(self, number: int, load: Applied, tables: int, rows: Iterable[Any]) -> None:
         """Which rows and numbers of a load's steps are found."""
-        assert load.motion is not None
-        of_runs = list(zip(load.motion.runs, load.law.tables, strict=True))  # type: ignore[attr-defined]
+        law = load.by_strokes
+        of_runs = list(zip(law.motion.runs, law.tables, strict=True))
         which = [next(run.stroke % tables for run, table in of_runs if table is one)
-                 for one in load.law.different]  # type: ignore[attr-defined]
+                 for one in law.different]
         for row in rows:
             if isinstance(row, Given) and row.name == f"sense of {load.name}":
                 self.inputs[id(row)] = {"load": number, "row": "ahead", **self._side(row)}
         # Of each diagram in turn, recorded once more for the reduced moment.
         for n, row in enumerate(r for r in rows if isinstance(r, Given) and r.name == f"sign of {load.name}"):
             self.inputs[id(row)] = {"load": number, "row": "sign", "table": which[n % len(which)], **self._side(row)}
-        if load.motion.path is not None:
-            for end, key in zip(load.motion.path.numbers[-2:], ("low", "long"), strict=True):
+        if law.motion.path is not None:
+            for end, key in zip(law.motion.path.numbers[-2:], ("low", "long"), strict=True):
                 self.inputs[id(end)] = {"load": number, "row": key}
 
     def _side(self, row: Any) -> dict[str, int]:

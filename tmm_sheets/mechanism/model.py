@@ -444,10 +444,7 @@ class Mechanism:
     def pairs(self) -> tuple[Pair, ...]:
         """All kinematic pairs, in order of attachment, named as in the manuals (A, B, B', C, D, D', D'')."""
         c = self.crank
-        pairs = [Pair(c.pivot, (self.frame, c.link), "rotation")]
-        for g in self.groups:
-            pairs += g.kind.pairs(self, g)
-        return tuple(pairs)
+        return (Pair(c.pivot, (self.frame, c.link), "rotation"), *(pair for g in self.groups for pair in g.kind.pairs(self, g)))
 
     def owner(self, point: str) -> str:
         """Link on which a point is fixed; the frame for fixed points, the first to carry it for hinges, the slider for its pin.

@@ -146,8 +146,7 @@ def integrate(plan: Plan, prefix: str, edges: Sequence[Any] | Floats, heights: S
     intervals = intervals or [str(k) for k in range(1, len(edges))]
     ends = [plan.add(f"{prefix}{borders[0]}", ORIGIN, start)]
     for i, border, (x0, x1), height in zip(intervals, borders[1:], pairwise(edges), heights, strict=True):
-        middle = plan.add(f"{prefix}m{i}", MID_ORDINATE, x0, x1, height)
-        carried = plan.add(f"{prefix}{i}{mark}", CARRY, middle)
+        carried = plan.add(f"{prefix}{i}{mark}", CARRY, plan.add(f"{prefix}m{i}", MID_ORDINATE, x0, x1, height))
         ray = plan.add(f"{prefix}P{i}{mark}", RAY, pole, carried)
         ends.append(plan.add(f"{prefix}{border}", CHORD, ends[-1], ray, x1))
     return ends

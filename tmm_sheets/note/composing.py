@@ -83,8 +83,7 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
             continue
         name = section["template"]
         try:
-            module = import_module(f"tmm_sheets.note.sections.{section['module']}")
-            found = getattr(module, f"{name}_fields")(reader)
+            found = getattr(import_module(f"tmm_sheets.note.sections.{section['module']}"), f"{name}_fields")(reader)
         except CannotBuild as e:
             reader.problems.append(str(e))
             continue

@@ -441,8 +441,7 @@ class _Writer:
 
     @block.register
     def _sheet(self, b: Sheet) -> None:
-        p = self._begun(1, f"{self.note.title_page['appendix']} {b.number}".upper())
-        p.paragraph_format.space_after = Pt(2)
+        self._begun(1, f"{self.note.title_page['appendix']} {b.number}".upper()).paragraph_format.space_after = Pt(2)
         self.paragraph("centre", b.title)
         self._picture(b)
 

@@ -50,8 +50,7 @@ def run_on(variant: Variant, say: Callable[[str], None] = lambda _: None) -> Var
 
     note, _, places = _typeset(Project(variant), say)
     first = int(places["pages"]) - sum(isinstance(b, Sheet) for b in note.body) + 1
-    block = variant.title_block.model_copy(update={"first_sheet": first})
-    return variant.model_copy(update={"title_block": block})
+    return variant.model_copy(update={"title_block": variant.title_block.model_copy(update={"first_sheet": first})})
 
 
 def _typeset(project: Project, say: Callable[[str], None]) -> tuple[Note, bytes, dict[str, int]]:

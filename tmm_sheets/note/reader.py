@@ -374,10 +374,8 @@ class Reader:
                 told[-1] = (told[-1][0], together)
             else:
                 told.append((step, sentence))
-        found: list[Inline] = []
-        for step, sentence in told:
-            found += [*marked(self.quoted(sentence), self.id(step), position, self.language, names), " "]
-        return tuple(found)
+        return tuple(piece for step, sentence in told
+                     for piece in (*marked(self.quoted(sentence), self.id(step), position, self.language, names), " "))
 
     def _together(self, first: str, second: str) -> str:
         """Two sentences that end with different letters as one: draw the lines AB, CD; empty where they differ in more."""

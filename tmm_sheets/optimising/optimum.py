@@ -23,7 +23,7 @@ from tmm_sheets.construction.function import Function
 from tmm_sheets.construction.program import rows_of
 from tmm_sheets.construction.step import Reported, part_of, value_of
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.numbers import listed, of_reader
+from tmm_sheets.numbers import NOISE, listed, of_reader
 from tmm_sheets.optimising.wishes import Bound, Values, Wish, bound, wish
 from tmm_sheets.project import Project
 from tmm_sheets.result_files import leaves
@@ -39,8 +39,6 @@ POSITIONS = 120
 TRIES = 400
 STEPS = 1000
 """Steps of a range, at least."""
-SAME = 1e-9
-"""Share by which the function and a project made anew may differ."""
 
 
 @dataclass(frozen=True)
@@ -128,9 +126,8 @@ class Optimum:
         rows += [(b.text, tell("kept"), "") for b in self.bounds]
         widths = [max(len(row[k]) for row in rows) for k in range(3)]
         lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
-        lost = sum(bool(t.refused) for t in self.trials)
         return [*lines, tell("{n} tries, {lost} of them cannot be built; {how}").format(
-            n=len(self.trials), lost=lost,
+            n=len(self.trials), lost=sum(bool(t.refused) for t in self.trials),
             how=tell("by one function") if self.by_function else tell("each a project made anew"))]
 
     def svg(self) -> bytes:
@@ -317,8 +314,7 @@ class Quick(Whole):
 
     def values(self, numbers: Sequence[float]) -> Values:
         """The results of some numbers; NaN where they have none."""
-        given = {v.name: v.si(x) for v, x in zip(self.some, numbers, strict=True)}
-        found = self.function(*self.rows, given=given)
+        found = self.function(*self.rows, given={v.name: v.si(x) for v, x in zip(self.some, numbers, strict=True)})
         return {name: part_of(found[name], of.part) for name, of in self.told.items()}
 
     def keeps(self, numbers: Sequence[float]) -> bool:
@@ -336,7 +332,7 @@ class Quick(Whole):
             whole = super().values(numbers)
         except (BadInput, CannotBuild):
             return True
-        return all(np.allclose(quick[name], whole[name], rtol=SAME, atol=SAME * np.max(np.abs(whole[name]))) for name in self.names)
+        return all(np.allclose(quick[name], whole[name], NOISE, NOISE * np.max(np.abs(whole[name]))) for name in self.names)
 
 
 class Asked:

@@ -177,8 +177,7 @@ def carry_out(works: Sequence[Task], order: Order) -> Iterator[Outcome]:
             yield one(work, order)
         return
     chunks = _chunks(works, workers)
-    method = "fork" if "fork" in multiprocessing.get_all_start_methods() else None
-    context = multiprocessing.get_context(method)
+    context = multiprocessing.get_context("fork" if "fork" in multiprocessing.get_all_start_methods() else None)
     told, end = context.Pipe(duplex=False)
     with told, end, _signals(lambda: end.send_bytes(b".")) as signals:
         try:

@@ -310,9 +310,8 @@ def table_of_tried(found: list[Tried]) -> str:
     for machine in dict.fromkeys(t.machine for t in found):
         own = [t for t in found if t.machine == machine]
         good = sum(not t.problem for t in own)
-        doubtful = sum(bool(t.warnings) for t in own)
         lines.append(tell("{machine}: {n} ciphers, {good} can be built, {doubtful} with doubtful numbers").format(
-            machine=machine, n=len(own), good=good, doubtful=doubtful))
+            machine=machine, n=len(own), good=good, doubtful=sum(bool(t.warnings) for t in own)))
         reasons: dict[str, list[tuple[Tried, str]]] = {}
         for t in own:
             for problem in re.split(r"\n(?=\S)", t.problem) if t.problem else ():

@@ -189,9 +189,8 @@ def group(asked: Mapping[str, str], say: Say) -> Message:
                                 "-o", str(MADE)), say)
     if status:
         raise CannotBuild("\n".join(lines))
-    made = sorted(p for p in MADE.rglob("*") if p.is_file())
     return {"group": json.loads(tree.read_text(encoding="utf-8")), "kinds": dict(zip(KINDS, called_kinds(), strict=True)),
-            "name": "reports.zip", "data": b64encode(_zipped(made)).decode()}
+            "name": "reports.zip", "data": b64encode(_zipped(sorted(p for p in MADE.rglob("*") if p.is_file()))).decode()}
 
 
 def _written(asked: Mapping[str, str]) -> str:

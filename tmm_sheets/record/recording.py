@@ -381,21 +381,13 @@ class _StepTexts:
                 sentence[label] = protocol.sentence(step, k, self.to_mm, self.unit, self.sizes)
                 if tree is not None and (text := _formula_in_numbers(step, tree, k)):
                     shown[label] = text
-                if found := _helpers(step, k):
+                if found := [_helper(h) for h in step.helpers(k)]:
                     lines[label] = found
         told: dict[str, Any] = {"sentence": sentence}
         if tree is not None:
             letters = latex(tree, [_argument_latex(a) for a in step.args])
             told["formula"] = {"symbols": f"{to_latex(step.symbol or step.name)} = {letters}", "numbers": shown}
         return told | ({"helpers": lines} if lines else {})
-
-
-def _helpers(step: Step, k: int) -> list[dict[str, Any]]:
-    if step.rule.helpers is None:
-        return []
-    value = step.at(k)
-    return [] if step.rule.gives != "curve" and (np.ndim(value) or np.isnan(value)) else \
-        [_helper(h) for h in step.rule.helpers(tuple(value_at(a, k) for a in step.args), value)]
 
 
 def _helper(h: Helper) -> dict[str, Any]:

@@ -295,16 +295,6 @@ def placed(canvas: Canvas, plan: Plan, origin: complex, mu: float | tuple[float,
     return PlayerStage(canvas, plan, None, canvas.frames[number], number)
 
 
-def helpers(s: PlayerStage, step: Step) -> tuple[Helper, ...]:
-    """Helper lines that a step leaves at the stage's position, in the unit of the plan; none where it cannot be built."""
-    if step.rule.helpers is None:
-        return ()
-    args, value = (tuple(value_at(a, s.k or 0) for a in step.args), step.at(s.k or 0))
-    if step.rule.gives != "curve" and (np.ndim(value) or np.isnan(value)):
-        return ()
-    return step.rule.helpers(args, value)
-
-
 def play(s: PlayerStage, steps: Iterable[Step | str] | None = None, style: str = "construction", cut: float = 3.0,
          over: float = 0.0, only: str = "") -> None:
     """Draw the helper lines of steps, of all in the plan unless told, in order.
@@ -312,7 +302,7 @@ def play(s: PlayerStage, steps: Iterable[Step | str] | None = None, style: str =
     Lines are produced ``over`` mm beyond their ends, compass cuts are arcs ``cut`` mm to both sides; ``only`` is one kind of them.
     """
     for step in map(s.step, s.plan if steps is None else steps):
-        for h in (h for h in helpers(s, step) if only in ("", h.kind)):
+        for h in (h for h in step.helpers(s.k or 0) if only in ("", h.kind)):
             pen = s.pen(step, "construction", *_ends(s, step, h))
             if h.kind == "line":
                 pen.ray_line(s.frame(h.a), s.frame(h.b), style, over)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Sequence
 from dataclasses import replace
-from math import cos, pi, sin
+from math import pi
 from typing import TYPE_CHECKING, Any
 
+from tmm_sheets.construction import arithmetic
 from tmm_sheets.construction.step import FoundNumber, Given, GivenNumber, GivenPoint, Plan, Rule
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import KINDS, TRIAD
@@ -29,6 +30,7 @@ from tmm_sheets.methods.linkage.loads import (
     stroke_law,
     turning_motion,
 )
+from tmm_sheets.methods.linkage.numbering import SENSES
 from tmm_sheets.task import synthesis_refs
 from tmm_sheets.task.schema import ForceTable, GroupTable, LinkTable, MomentTable
 from tmm_sheets.task.variant import Variant
@@ -80,8 +82,7 @@ def mechanism_of(variant: Variant, synthesis: Synthesis | None = None) -> Mechan
     listed = {p.name: _link(of, i, p) for i, p in enumerate(variant.link)}
     groups = tuple(_group(of, i, g) for i, g in enumerate(variant.group))
     names = [crank.link, *(name for g in groups for name in g.links)]
-    links = {name: listed.get(name, Link(name)) for name in names}
-    mechanism = Mechanism(crank, fixed, guides, groups, points, links)
+    mechanism = Mechanism(crank, fixed, guides, groups, points, {name: listed.get(name, Link(name)) for name in names})
     if variant.input is None:
         return mechanism
     from tmm_sheets.methods.linkage.drive import driven
@@ -147,7 +148,6 @@ def _link(of: Givens, i: int, p: LinkTable) -> Link:
 
 AGAINST = {"against motion": -1.0, "along motion": 1.0}
 """Signs of loads that follow a motion."""
-SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
 
 
 def applied_of(variant: Variant, mechanism: Mechanism, cycle: Cycle) -> Loads:
@@ -201,8 +201,7 @@ def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, 
                                          of.number(f.ambient, "p_0", "Pa", "force", i, "ambient"))
     diagrams = _diagrams(of, plan, f, tables, PISTON if numbers else None, numbers, "force", i)
     strokes = f.over == "stroke" and (f.sense is not None or (c is not None and f.point == c.output))
-    toward: complex | None = unit(f.direction) if isinstance(f.direction, float) else None
-    motion = None
+    toward: complex | None = arithmetic.unit(f.direction) if isinstance(f.direction, float) else None
     if toward is not None and _steady(f) and not strokes:
         law, jumps = steady_law(f.value or 0.0)
     elif f.over == "angle":
@@ -225,7 +224,7 @@ def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, 
         laws, signs = by_run(motion, f.stroke, tables, against, f.name)
         law, jumps = stroke_law(motion, laws, signs, f.curve == "smooth", against is None and f.tables is not None)
     along = GivenPoint(toward, f"force[{i}].direction", "", "", of.variant.source("force", i, "direction"))
-    return Applied(f.name, f.link, f.point, toward, law, jumps, motion, diagrams, along)
+    return Applied(f.name, f.link, f.point, toward, law, jumps, diagrams, along)
 def _no_strokes(name: str) -> tuple[str, str]:
     """What to say of a load that follows strokes where there are none."""
     return (tell("{name}: the crank only swings, there are no strokes").format(name=name),
@@ -244,7 +243,7 @@ def _way(mechanism: Mechanism, link: str, named: str, force: str) -> complex:
         return _along_guide(mechanism, named, force)
     for at in (reaction for g in mechanism.groups for reaction in g.kind.outer_reactions(g)):
         if at.link == link and at.guide and (guide := mechanism.guides[at.guide]).link == mechanism.frame:
-            along = unit(guide.direction)
+            along = arithmetic.unit(guide.direction)
             share = (along * SENSES[named].conjugate()).real
             return (1 if share > 0 else -1) * along if 1e-9 < abs(share) < 1 - 1e-12 else SENSES[named]
     return SENSES[named]
@@ -258,7 +257,7 @@ def _along_guide(mechanism: Mechanism, named: str, force: str) -> complex:
             tell('force {force}: unknown sense "{named}"').format(force=force, named=named),
             tell("known here are {known}").format(known=known),
         )
-    return unit(guide.direction) * (1 if named[0] == "+" else -1)
+    return arithmetic.unit(guide.direction) * (1 if named[0] == "+" else -1)
 
 
 def _moment(of: Givens, plan: Plan, i: int, m: MomentTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
@@ -266,7 +265,7 @@ def _moment(of: Givens, plan: Plan, i: int, m: MomentTable, mechanism: Mechanism
     fixed = {"clockwise": -1.0, "counter-clockwise": 1.0}.get(m.direction)
     sign = None if fixed is None else GivenNumber(fixed, f"moment[{i}].direction")
     numbers: tuple[GivenNumber | None, ...] = ()
-    rule, motion = None, None
+    rule = None
     if fixed is not None and _steady(m):
         law, jumps = steady_law(fixed * (m.value or 0.0))
     elif m.over == "angle":
@@ -283,7 +282,7 @@ def _moment(of: Givens, plan: Plan, i: int, m: MomentTable, mechanism: Mechanism
         motion = turning_motion(mechanism, cycle, m.link, sense, m.first)
         laws, signs = by_run(motion, m.stroke, tables, AGAINST.get(m.direction), m.name)
         law, jumps = stroke_law(motion, laws, [s * (sense if fixed is None else fixed) for s in signs], m.curve == "smooth")
-    return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion, _diagrams(of, plan, m, tables, rule, numbers, "moment", i),
+    return Applied(m.name, m.link, None, 1 + 0j, law, jumps, _diagrams(of, plan, m, tables, rule, numbers, "moment", i),
                    sign=sign)
 
 
@@ -305,14 +304,6 @@ def by_run(motion: OutputMotion, stroke: str, tables: Sequence[Table | None], ag
     acts = [stroke == "both" or (stroke == "working") == run.working for run in motion.runs]
     laws = [tables[run.stroke % len(tables)] if on else None for run, on in zip(motion.runs, acts, strict=True)]
     return laws, [1.0 if against is None else against * run.sense for run in motion.runs]
-
-
-def unit(angle: float) -> complex:
-    """Unit vector; exact for multiples of 90 degrees."""
-    quarter = angle / (pi / 2)
-    if quarter == round(quarter):
-        return (1 + 0j, 1j, -1 + 0j, -1j)[round(quarter) % 4]
-    return complex(cos(angle), sin(angle))
 
 
 def _group(of: Givens, i: int, g: GroupTable) -> StructuralGroup:

@@ -79,8 +79,7 @@ def heading(folder: Path, project: str) -> dict[str, Any]:
 
 def table_of_heading(path: Path, fields: Mapping[str, str] | None = None) -> dict[str, Any]:
     """Table ``[project]`` of a project file, or of a scheme with the ``fields`` that are filled in there; no other is read."""
-    text = _text(path)
-    rest = re.split(r"^\[project\]$", text, maxsplit=1, flags=re.MULTILINE)[1]
+    rest = re.split(r"^\[project\]$", _text(path), maxsplit=1, flags=re.MULTILINE)[1]
     heading = re.split(r"^\[", rest, maxsplit=1, flags=re.MULTILINE)[0]
     return _tables(Template(heading).substitute(fields) if fields else heading, path)
 

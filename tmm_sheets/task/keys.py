@@ -137,8 +137,7 @@ def restricted(base: Any, validators: tuple[Any, ...]) -> str:
             said.append(tell(given["quantity"].name))
         elif "least" in given:
             few, many = marked("whole number from {least} to {most}"), marked("whole number, {least} or more")
-            wording = many if given["most"] == MOST else few
-            said.append(tell(wording).format(least=given["least"], most=given["most"]))
+            said.append(tell(many if given["most"] == MOST else few).format(least=given["least"], most=given["most"]))
     said = list(dict.fromkeys(said))
     return ", ".join(reversed(said[:1] if len(said) == 2 and said[1] == tell("name in quotes") else said))
 

@@ -11,14 +11,13 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, WrapValidator
 
 from tmm_sheets import resources, spelling
+from tmm_sheets.numbers import ROUNDING
 from tmm_sheets.task import units
 from tmm_sheets.task.letters import title_text
 from tmm_sheets.words import marked, tell
 
 LEAST, GREATEST = 1e-12, 1e12
 """Sizes of numbers in SI that any machine may have, zero besides: powers and products of what lies beyond are no numbers."""
-ROUNDING = 1e-12
-"""Numbers that programs write are rounded: less than this of its unit is zero, as near to a limit is the limit."""
 
 
 def parsed(value: Any, quantity: units.Quantity) -> float:

@@ -308,7 +308,7 @@ def _from_moments(project: Project, found: Measurables, total: Step, moments: Ma
     f, k = project.study.forces, project.force_index
     label = project.study.labels[k]
     products = [(tuple(map(plain, names)), moment) for names, moment in moments.items() if moment]
-    for unknown in [part.vector for part in f.from_moments] + ([f.balancing] if f.balancing is not None else []):
+    for unknown in [*(part.vector for part in f.from_moments), f.balancing]:
         if unknown.args[0] is not total:
             continue
         across = []

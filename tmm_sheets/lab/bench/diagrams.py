@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
-from math import pi
+from math import tau
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.construction.arithmetic import continuous_argmax
 from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.step import Plan
-from tmm_sheets.lab.bench.records import Bench
+from tmm_sheets.lab.bench.records import DIGITS, Bench
 from tmm_sheets.methods.flywheel.flywheel import Flywheel
 from tmm_sheets.methods.flywheel.wheel_methods import Mertsalov, Wittenbauer
 from tmm_sheets.methods.integration import Quadrature, integrate, ordinates, smooth
@@ -23,8 +23,6 @@ from tmm_sheets.project import Project
 
 CHORDS = (6, 12, 24, 48, 96, 192, 384)
 POSITIONS = (10, 20, 40, 80, 160, 320)
-DIGITS = 40
-TURN = 2 * pi
 
 
 # --- integrands with their integrals in closed form -------------------------------------------------------------------
@@ -43,7 +41,7 @@ class Integrand:
     def size(self) -> float:
         """Largest absolute value of the integral."""
         with mp.workdps(DIGITS):
-            return max(float(abs(self.integral(mp.mpf(x)))) for x in (*np.linspace(0, TURN, 721).tolist(), *self.borders))
+            return max(float(abs(self.integral(mp.mpf(x)))) for x in (*np.linspace(0, tau, 721).tolist(), *self.borders))
 
     def chords(self, borders: tuple[float, ...], n: int) -> tuple[Floats, Floats]:
         """Ends of ``n`` chords and of those at borders, and the integral that is constructed there."""
@@ -77,7 +75,7 @@ PEAKED = Integrand("diagram with a peak", lambda x: np.maximum(1 - np.abs(x - PE
 
 
 def _edges(n: int, borders: tuple[float, ...] = ()) -> Floats:
-    return np.unique(np.concatenate((np.linspace(0, TURN, n + 1), borders)))
+    return np.unique(np.concatenate((np.linspace(0, tau, n + 1), borders)))
 
 
 def _chords(f: Callable[[Floats], Floats], edges: Floats) -> Floats:
@@ -110,10 +108,10 @@ def _excess(bench: Bench) -> None:
     def on_curve(n: int) -> float:
         edges = _edges(n)
         ends = _chords(f, edges)
-        return _span(lambda t: np.asarray(smooth(edges, ends, f(edges[:-1]), f(edges[1:]), t)), np.linspace(0, TURN, 721))
+        return _span(lambda t: np.asarray(smooth(edges, ends, f(edges[:-1]), f(edges[1:]), t)), np.linspace(0, tau, 721))
 
     def converged(n: int) -> float:
-        return _span(Quadrature(f, _edges(n), order=4), np.linspace(0, TURN, 721))
+        return _span(Quadrature(f, _edges(n), order=4), np.linspace(0, tau, 721))
 
     ways = (("extremes among the ends of the chords", lambda n: float(np.ptp(_chords(f, _edges(n))))),
             ("smooth curve, extremes between", on_curve), ("limit: 4 Gauss points for each interval", converged))
@@ -132,8 +130,7 @@ class ShaperEnergy:
 
     def swing(self, beta: Any) -> tuple[Any, Any]:
         """Angle of the rocker from the vertical and its derivative by ``beta``, that of the crank, clockwise."""
-        v = self.project.variant
-        r, d = mp.mpf(v.crank.length), abs(mp.mpf(self.project.mechanism.fixed["C"].imag))  # type: ignore[union-attr]
+        r, d = mp.mpf(self.project.variant.crank.length), abs(mp.mpf(self.project.mechanism.fixed["C"].imag))  # type: ignore[union-attr]
         x, y = r * mp.sin(beta), d + r * mp.cos(beta)
         return mp.atan2(x, y), r * (r + d * mp.cos(beta)) / (x * x + y * y)
 

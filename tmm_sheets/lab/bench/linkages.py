@@ -66,9 +66,8 @@ Values = dict[str, Any]
 def _values(study: Study, plan: str) -> dict[str, Values]:
     """What a plan gives, by kinds of comparable size."""
     if plan == "forces":
-        balancing = study.forces.balancing
-        assert balancing is not None  # every linkage here is driven by a moment
-        return {"reactions": {k: s.value for k, s in study.forces.reactions.items()}, "balancing": {"": balancing.value}}
+        found = study.forces
+        return {"reactions": {k: s.value for k, s in found.reactions.items()}, "balancing": {"": found.balancing.value}}
     made = getattr(study, plan)
     return {kind: {k: s.value for k, s in getattr(made, name).items()} for kind, (name, _) in QUANTITIES[plan].items()}
 

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from mpmath import mp
 
 from tmm_sheets import catalogue
-from tmm_sheets.lab.bench.records import Bench
+from tmm_sheets.lab.bench.records import DIGITS, Bench
 from tmm_sheets.methods.cams.cam_profile import RollerCam, cam
 from tmm_sheets.methods.gears.gear_engagement import divisions, involute_plan
 from tmm_sheets.methods.gears.gear_geometry import GearWheel
@@ -24,7 +24,6 @@ from tmm_sheets.methods.gears.planetary import TIERS, ToothSet, search
 from tmm_sheets.methods.gears.rack import Rack, flank
 from tmm_sheets.project import Project
 
-DIGITS = 40
 CHECKED = 24
 
 Complex = npt.NDArray[np.complex128]

@@ -26,6 +26,8 @@ Found = TypeVar("Found")
 SCHEMA = 1
 PATIENCE = 0.15
 """Seconds after which no further repetition begins."""
+DIGITS = 40
+"""Of the numbers of mpmath that the methods are measured against."""
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets import quoting
+from tmm_sheets.construction.arithmetic import halved
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.lab.stress import change_points
 from tmm_sheets.lab.stress.change_points import folding, hinge_errors, in_a_row, scene
@@ -150,11 +151,8 @@ def _limited(rng: np.random.Generator) -> tuple[Mechanism, float]:
 
 def _sharpened(m: Mechanism, angle: float) -> float:
     """The double next to the dead position on the side where the group assembles."""
-    low, high = angle - 1e-6, angle + 1e-6
-    inside = change_points.motion(m, low) is not None
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (middle, high) if (change_points.motion(m, middle) is not None) == inside else (low, middle)
+    inside = change_points.motion(m, angle - 1e-6) is not None
+    low, high = halved(lambda at: (change_points.motion(m, at) is not None) == inside, angle - 1e-6, angle + 1e-6)
     return low if inside else high
 
 
@@ -328,8 +326,7 @@ def memory(positions: int = 1_000_000) -> float:
     """Most memory, MB, that plans of a six-bar at very many positions take when they are drawn in chunks."""
     import tracemalloc
 
-    rng = np.random.default_rng(0)
-    m = chain(rng, kinds=(1, 2))[0]
+    m = chain(np.random.default_rng(0), kinds=(1, 2))[0]
     tracemalloc.start()
     total = 0.0
     for first in range(0, positions, CHUNK):

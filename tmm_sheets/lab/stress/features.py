@@ -212,8 +212,7 @@ def balance(of: Features, make: Callable[..., State]) -> Iterator[Residual]:
     drive, uneven = m.drive, study.running is not None
     added = 0.0 if not uneven else max(project.flywheel.J_flywheel, 0.0) + project.flywheel.J_rotor
 
-    every = np.arange(len(s.phi))
-    other, slope = slopes(s, every, 0.01)
+    other, slope = slopes(s, np.arange(len(s.phi)), 0.01)
     kinetic = energy(s)[0] + added * omega**2 / 2
     rate = drive.acceleration / drive.speed if drive else study.accelerations.epsilon["1"].value / omega
     change = slope(energy(other)[0]) * omega + 2 * kinetic * rate
@@ -243,7 +242,6 @@ def balance(of: Features, make: Callable[..., State]) -> Iterator[Residual]:
 def _driving(of: Features, s: State) -> Any:
     """Power of what drives, by the force plans, W."""
     study, driver = of.project.study, of.project.driver
-    assert study.forces.balancing is not None
     found = s.spread(study.forces.balancing)
     if isinstance(driver, InputForce):
         drive = driver.drive

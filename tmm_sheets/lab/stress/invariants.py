@@ -377,9 +377,7 @@ def by_plans_and_lever(s: State) -> tuple[Any, Any]:
     """Balancing moment from the force plans, with its limits in change points, and from the lever, N m."""
     loads, couples, _ = s.loads
     limits = limits_of_forces(s.positions, s.accelerations, loads, couples, None)
-    step = kinetostatics(s.positions, s.accelerations, loads, couples, None, limits=limits).balancing
-    assert step is not None
-    return s.spread(step), balancing(s)
+    return s.spread(kinetostatics(s.positions, s.accelerations, loads, couples, None, limits=limits).balancing), balancing(s)
 
 
 def statics(s: State) -> Iterator[Residual]:
@@ -412,7 +410,6 @@ def statics(s: State) -> Iterator[Residual]:
             for link in plan.links:
                 pull = sum((s.spread(load.vector) for load in loads[link]), pull)
             yield "polygon closure", np.where(strongest > 0, np.abs(pull) / strongest, 0.0)
-        assert forces.balancing is not None
         assert balance is not None
         for turn in _moments(s, loads, link_couples, forces, reactions).values():
             yield "moments on every link", np.where(total > 0, np.abs(turn) / total, 0.0)
@@ -447,5 +444,4 @@ def balancing(s: State) -> Any:
     loads, couples, _ = s.loads
     on_lever = lever(s.velocities, [load for of_link in loads.values() for load in of_link], couples, None)
     s.evaluate(on_lever.plan)
-    assert on_lever.balancing is not None
     return s.spread(on_lever.balancing)

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.expression import Complex, Directions, Floats, Points, Reals, primitive
+from tmm_sheets.mechanism.groups.contexts import SWEEP
 
 CIRCLE, LINE, SLOT = 0.0, 1.0, 2.0
 """What a leg does: its corner on a circle, on a line; a line of the triangle through a point."""
@@ -27,8 +28,6 @@ triangle's own frame, m."""
 Pose = tuple[complex, complex]
 """First corner of the triangle, m, and its direction."""
 
-NODES = 720
-"""Crank angles at which a way of assembly is followed, before steps are made smaller."""
 FINEST = 7
 """How many times a step is divided by eight before the way is said to end."""
 SHRINKING = 0.25
@@ -289,7 +288,7 @@ def course(before: Callable[[Floats], Legs], at: float, near: float) -> Course:
     start = before(np.array([at]))
     one = tuple(x if i % 5 == 0 else np.ravel(x)[0] for i, x in enumerate(start))
     found = tuple(modes(one))
-    grid: Floats = np.asarray(at + 2 * np.pi / NODES * np.arange(NODES + 1), dtype=np.float64)
+    grid: Floats = np.asarray(at + 2 * np.pi / SWEEP * np.arange(SWEEP + 1), dtype=np.float64)
     grid[-1] = at + 2 * np.pi
     if not found:
         nothing = np.full(len(grid), np.nan, dtype=complex)

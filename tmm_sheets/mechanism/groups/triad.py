@@ -268,9 +268,7 @@ class TriadKind(GroupKind):
     def _normal(pos: Positions, leg: Leg) -> Step:
         """Direction along which a leg holds the triangle: its own, or across its guide or slot; drawn once."""
         u = pos.directions[leg.link]
-        if leg.form == "RR":
-            return u
-        return pos.plan.add_once(f"⟂{leg.guide or 'dir ' + leg.link}", rules.TURN, u)
+        return u if leg.form == "RR" else pos.plan.add_once(f"⟂{leg.guide or 'dir ' + leg.link}", rules.TURN, u)
 
     # --- velocities and accelerations -------------------------------------------------------------------------------
 
@@ -377,8 +375,7 @@ class TriadKind(GroupKind):
         z = pos.points[g.legs[2].corner].value
         found = np.where(np.isnan(z), np.nan, pos.mechanism.crank.length) + 0.0 * np.abs(sum(np.abs(x) for x in held[1::5]))
         reached = np.flatnonzero(~np.isnan(way.k))
-        size = np.size(found)
-        phi = np.broadcast_to(value_of(pos.angle), (size,))
+        phi = np.broadcast_to(value_of(pos.angle), (np.size(found),))
         for i in np.flatnonzero(np.isnan(z)):
             legs = tuple(x[i] if np.ndim(x) else x for x in held)
             if np.isnan(np.array(legs, dtype=complex)).any():

@@ -146,7 +146,8 @@ class TwoWayKind(HingedKind):
     def numbers(self, m: Mechanism, g: StructuralGroup) -> tuple[Any, ...] | None:
         """What the crossing of a group follows from, one outer hinge on the crank, the rest fixed; None elsewhere."""
 
-    def apart(self, m: Mechanism, g: StructuralGroup, phi: Any) -> tuple[Step | None, Step | None]:
+    def apart(self, m: Mechanism, g: StructuralGroup, phi: Any, numbers: tuple[Any, ...], gaps: Gaps) -> tuple[
+            Step | None, Step | None]:
         """Distance of the centres on crank angles, and their line where they come to lie in one place; nothing of arc and line."""
         return None, None
 
@@ -158,7 +159,7 @@ class TwoWayKind(HingedKind):
         numbers, gaps = self.numbers(m, g), self.gaps(m, g)
         if numbers is None or gaps is None:
             return None
-        distance, line = self.apart(m, g, phi)
+        distance, line = self.apart(m, g, phi, numbers, gaps)
         turning = passing(m, g, phi, self.branches, numbers, turned=line is not None) if gaps.touching else None
         return self._crossing(g, Step(f"h {g.name}", self.half, (phi, *numbers)), distance,
                               g.side if turning is None else turning.side, turning, line)
@@ -221,10 +222,9 @@ class RRRKind(TwoWayKind):
         d = np.abs(q - p)
         return (l1 + l2 - d) * (l1 + l2 + d), (d - l1 + l2) * (d + l1 - l2), (l1 + l2) * rounding(l1 + l2, p, q)
 
-    def apart(self, m: Mechanism, g: StructuralGroup, phi: Any) -> tuple[Step | None, Step | None]:
-        span, gaps = span_from_crank(m, g), self.gaps(m, g)
-        assert span is not None
-        assert gaps is not None
+    def apart(self, m: Mechanism, g: StructuralGroup, phi: Any, numbers: tuple[Any, ...], gaps: Gaps) -> tuple[
+            Step | None, Step | None]:
+        span = numbers[:-len(g.lengths)]
         if not meets(span, gaps, *g.lengths):
             return Step(f"d {g.name}", DISTANCE, (phi, *span)), None
         return (Step(f"d {g.name}", SIGNED_DISTANCE, (phi, *span, *g.lengths)),
@@ -384,8 +384,7 @@ class RPRKind(GroupKind):
         f_ji = forces.opposite(j, i, f_ij)
         rocker = forces.plan_of(j, (j,))
         first = rocker.begin(1)
-        on_j = forces.opposite_couple(j, i, inner)
-        contact = forces.contact(j, i, pos.points[p], f_ji, on_j)
+        contact = forces.contact(j, i, pos.points[p], f_ji, forces.opposite_couple(j, i, inner))
         tail = rocker.lay_loads(first, [contact, *forces.order(forces.loads[j], "weight")])
         forces.loads[j].insert(0, contact)
         f_jb = forces.close(rocker, j, base, tail, first)
@@ -496,19 +495,16 @@ class RPPKind(GroupKind):
         f_ji = forces.read(fp, j, i, one, start, drawn=False)
         f_jb = forces.read(fp, j, base, end, one, drawn=False)
         # Block: F_ij, its loads, closing force from the link that carries the pin.
-        f_ij = forces.opposite(i, j, f_ji)
-        forces.loads[i].insert(0, forces.contact(i, j, pos.points[p], f_ij))
+        forces.loads[i].insert(0, forces.contact(i, j, pos.points[p], forces.opposite(i, j, f_ji)))
         inner = forces.sliding(i, j, f_ji, pos.points[p])
         owner = m.owner(p)
         block = forces.plan_of(i, (i,))
         first = block.begin(1)
         loads = forces.loads[i]
         rest = [load for load in loads if load.role != "reaction"] + [load for load in loads[1:] if load.role == "reaction"]
-        tail = block.lay_loads(first, [loads[0], *rest])
-        f_io = forces.close(block, i, owner, tail, first)
+        f_io = forces.close(block, i, owner, block.lay_loads(first, [loads[0], *rest]), first)
         # The guided link also carries the opposite of the inner couple.
-        on_j = forces.opposite_couple(j, i, inner)
-        forces.loads[j].append(forces.contact(j, i, pos.points[p], f_ji, on_j))
+        forces.loads[j].append(forces.contact(j, i, pos.points[p], f_ji, forces.opposite_couple(j, i, inner)))
         outer = forces.sliding(j, base, f_jb, pos.points[p])
         forces.react(i, owner, pos.points[p], f_io)
         forces.react(j, base, pos.points[p], f_jb, outer)

@@ -27,11 +27,10 @@ from tmm_sheets.methods.cams.cam_laws import (
     share,
     within_turn,
 )
+from tmm_sheets.numbers import ROUNDING
 from tmm_sheets.words import marked, tr
 
 SOURCE = "000, 7.1"
-INSIDE = 1e-12
-"""A share of a phase, or rad: how far inside a border one-sided limits are read."""
 KINDS: dict[str, tuple[Kind, Kind, Kind]] = {
     "S": ("ordinate", "ordinate", "ordinate"), "ψ": ("inclination", "number", "number"),
 }  # fmt: skip
@@ -238,7 +237,7 @@ class ExactMotion:
                             tr("numbered positions, limit from the right"))
 
     def _beside(self, side: int, name: str, title: str, choice: str) -> Displacement:
-        phi = Given(self.law.positions + side * INSIDE, "cam.parts", choice=choice, unit="rad")
+        phi = Given(self.law.positions + side * ROUNDING, "cam.parts", choice=choice, unit="rad")
         return self.displacement(Plan(name, title, "m", self.law.labels), phi)
 
     def at(self, name: str, title: str, phi: Reals, choice: str) -> Displacement:
@@ -248,8 +247,6 @@ class ExactMotion:
 
     def display(self, parts: int = 64) -> Floats:
         """Cam angles from the rise to the end of the fall for smooth curves, rad: jumps are met from both sides."""
-        found = []
-        for p in self.law.phases[:-1] if self.law.lower_dwell.angle else self.law.phases:
-            for a, b in pairwise((0.0, *p.law.jumps, 1.0)):
-                found.append(p.phi(np.linspace(a + INSIDE, b - INSIDE, parts + 1)))
-        return np.concatenate(found)
+        phases = self.law.phases[:-1] if self.law.lower_dwell.angle else self.law.phases
+        return np.concatenate([p.phi(np.linspace(a + ROUNDING, b - ROUNDING, parts + 1))
+                               for p in phases for a, b in pairwise((0.0, *p.law.jumps, 1.0))])

@@ -205,8 +205,7 @@ class _Accelerations(_Pieces):
 
     def _integrals(self, dds: Floats) -> tuple[Floats, Floats, Floats]:
         ds, s = _integral(dds), _integral(_integral(dds))
-        rise = np.concatenate(([0.0], np.cumsum(_value(ds, self.widths))))
-        ds[:, 0] = rise[:-1]
+        ds[:, 0] = np.concatenate(([0.0], np.cumsum(_value(ds, self.widths))))[:-1]
         s = _integral(ds)
         s[:, 0] = np.concatenate(([0.0], np.cumsum(_value(s, self.widths))))[:-1]
         return s, ds, dds

@@ -268,8 +268,7 @@ class Cam(ABC):
     def _bare(self, phi: Floats, name: str = "between",
               choice: str = marked("the phases are divided into equal parts")) -> Inversion:
         at = self.exact.at(f"cam-law-{name}", tr("Law of motion between the positions"), phi, choice)
-        plan = Plan(f"cam-profile-{name}", tr("Cam profile between the positions"), "m", at.plan.labels)
-        return self._invert(plan, at)
+        return self._invert(Plan(f"cam-profile-{name}", tr("Cam profile between the positions"), "m", at.plan.labels), at)
 
     @abstractmethod
     def _invert(self, plan: Plan, at: Displacement) -> Inversion:
@@ -470,8 +469,7 @@ class RollerCam(Cam):
         for name, radius, shares in (("r_0", self.zone.plan["r_0"], SHARE_OF_R0), ("ρ", rho, of_rho)):
             for i, part in enumerate(shares, 1):
                 plan.add(f"{name}_{i}", PART, part, radius)
-        inside = self._inscribed(plan)
-        most = plan.add("r_max", LEAST, rho, *inside)
+        most = plan.add("r_max", LEAST, rho, *self._inscribed(plan))
         chosen = self.given("roller")
         if chosen is not None:
             plan.add("r_p", CHOSEN, chosen, symbol="r_p")
@@ -637,9 +635,7 @@ def cam(data: CamTable) -> Cam:
 def _law(data: CamTable, name: str, table: str) -> Law:
     if name == "displacements":
         return ordinates_law(*data.ordinates(fall=table == "fall_table"))
-    if name == "table":
-        return table_law(*data.diagram(table), key=f"cam.{table}")
-    return LAWS[name]
+    return table_law(*data.diagram(table), key=f"cam.{table}") if name == "table" else LAWS[name]
 
 
 FOLLOWERS: dict[str, tuple[type[Cam], bool]] = {

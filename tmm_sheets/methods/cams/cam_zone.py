@@ -119,9 +119,7 @@ class Cones:
 
     def starts(self, p: Phase, x: Reals) -> Points:
         """Positions of B, m."""
-        if self.pivot is None:
-            return 1j * np.asarray(p.s(x))
-        return _swung(self.pivot, np.asarray(p.s(x)), self.turn)
+        return 1j * np.asarray(p.s(x)) if self.pivot is None else _swung(self.pivot, np.asarray(p.s(x)), self.turn)
 
     def tips(self, p: Phase, x: Reals) -> Points:
         """Tips D of the cones, m."""
@@ -423,8 +421,7 @@ class Zone:
         """Plan of the smooth curve of the tips."""
         x = np.linspace(0, 1, 129)
         phi = np.concatenate([p.phi(x) for p in self.cones.phases])
-        at = self.exact.at("cam-zone-between", tr("Curve of S(S')"), phi, tr("nodes of a smooth curve"))
-        return self._tips(at)
+        return self._tips(self.exact.at("cam-zone-between", tr("Curve of S(S')"), phi, tr("nodes of a smooth curve")))
 
     @property
     def curve(self) -> Step:

@@ -19,7 +19,7 @@ from tmm_sheets.construction.step import Step, named
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.integration import Quadrature
 from tmm_sheets.methods.linkage.cycle import closed
-from tmm_sheets.numbers import is_zero
+from tmm_sheets.numbers import ROUNDING, is_zero
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
@@ -161,8 +161,6 @@ class Intervals:
 _FACTORS = {"angle": ("mu_phi", "rad/mm"), "force": ("mu_F", "N/mm"), "moment": ("mu_M", "N*m/mm"), "work": ("mu_A", "J/mm"),
             "energy": ("mu_E", "J/mm"), "excess": ("mu_dE", "J/mm"), "inertia": ("mu_J", "kg*m2/mm")}  # fmt: skip
 """Names and units of the scale factors in the record."""
-EVEN = 1e-12
-"""A change of energy that is none, in parts of the work."""
 
 
 @dataclass(frozen=True)
@@ -248,7 +246,7 @@ class Diagrams(Intervals, ABC):
         mass = self.inertia(self.samples)
         # The zero level belongs to the diagram as well.
         energies = [*excess[[excess.argmax(), excess.argmin()]], *self._energies(excess, mass), 0.0]
-        if not max(np.ptp(excess), np.ptp(mass) * reduced.omega1**2 / 2) > EVEN * np.ptp(done):
+        if not max(np.ptp(excess), np.ptp(mass) * reduced.omega1**2 / 2) > ROUNDING * np.ptp(done):
             raise CannotBuild(tell("the machine runs evenly: in every position the moments balance each other, and no link gains "
                                    "or loses energy"), tell("leave [flywheel] and its sheet out"))
         mu_phi = handy(reduced.period / space.angle)

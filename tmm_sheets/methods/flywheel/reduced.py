@@ -107,8 +107,7 @@ class Reduction:
         """Velocity plans at the angles."""
         if self._drawn is not None:
             return self._drawn()
-        r = self.reduced
-        return velocity_plan(position_plan(r.mechanism, self.angles, self.labels, self.where, self.purpose))
+        return velocity_plan(position_plan(self.reduced.mechanism, self.angles, self.labels, self.where, self.purpose))
 
     @cached_property
     def accelerations(self) -> Accelerations:

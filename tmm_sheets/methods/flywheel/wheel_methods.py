@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from math import pi
+from math import tau
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -47,8 +47,6 @@ if TYPE_CHECKING:
     from tmm_sheets.task.schema import FlywheelTable
 
 
-TURN = 2 * pi
-"""One turn of the crank, rad."""
 FASTEST = Rule("angular velocity at the upper tangent", lambda omega, delta: omega * (1 + delta / 2), ("number",) * 2, "number",
                "",
                unit="rad/s", source="000, 5.5")
@@ -78,12 +76,12 @@ class Wittenbauer(Flywheel):
     def inertia_angle(self) -> Scale:
         """Scale factor of the angle axis of the graph J(phi): one turn of a longer cycle fills it (manual 000, 5 ex. 2)."""
         angle = self.scales.angle
-        return angle if self.reduced.period <= TURN else fit(angle.symbol, angle.unit, TURN, angle.mm(self.reduced.period))
+        return angle if self.reduced.period <= tau else fit(angle.symbol, angle.unit, tau, angle.mm(self.reduced.period))
 
     @property
     def inertia_turn(self) -> float:
         """One turn: later ones repeat it."""
-        return min(self.reduced.period, TURN)
+        return min(self.reduced.period, tau)
 
     def _energies(self, excess: Floats, mass: Floats) -> Iterable[float]:
         delta = self.limit.delta if self.given else self.permitted

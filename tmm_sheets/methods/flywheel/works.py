@@ -16,7 +16,7 @@ from tmm_sheets.construction.step import Given, Helper, Plan, Row, Rule, Step, S
 from tmm_sheets.methods.flywheel.diagram_scales import Diagrams
 from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT
 from tmm_sheets.methods.integration import AREA, ON_CURVE, ORIGIN, SMOOTH, Quadrature, differentiate, integrate
-from tmm_sheets.numbers import is_zero
+from tmm_sheets.numbers import ROUNDING, is_zero
 from tmm_sheets.words import marked, tr
 
 
@@ -43,8 +43,6 @@ STEEP = 3.0
 """A curve between two points that is nowhere steeper at its ends, in slopes of the chord, neither rises nor falls beyond them
 (F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17, 1980).
 """
-LEVEL = 1e-12
-"""Slope of a curve that is level but for rounding, in slopes of the chord."""
 JUMP = 1e-6
 """Ordinates of a graph on both sides of a border that differ by more, mm, are those of a jump."""
 BORDER_SLOPE = Rule("slope of an integral", lambda y, pole: y / pole, ("number", "length"), "number",
@@ -173,8 +171,7 @@ class Works(Diagrams):
     @cached_property
     def closing(self) -> Given:
         """Numbers of the positions over the closed cycle: the last is the first again."""
-        n = len(self.reduced.labels)
-        return Given(np.append(np.arange(n), 0), "positions of the closed cycle")
+        return Given(np.append(np.arange(len(self.reduced.labels)), 0), "positions of the closed cycle")
 
     @planned("abscissae@positions", marked("Abscissae of the positions"), "mm", "labels")
     def across_plan(self, plan: Plan) -> None:
@@ -247,7 +244,7 @@ class Works(Diagrams):
             for side, at, border, ahead in zip("+−", (left, right), (k, k + 1), steep, strict=True):
                 plan.add(f"{side}{interval}", *(
                     (STEEPEST, plan[f"y{interval}"], self.pole, STEEP)
-                    if steep.min() >= -LEVEL * chord**2 and ahead > STEEP * chord**2 > 0 else
+                    if steep.min() >= -ROUNDING * chord**2 and ahead > STEEP * chord**2 > 0 else
                     (SLOPE_OF_CHORD, slopes[side], border) if at is None else (BORDER_SLOPE, at, self.pole)))
 
     def _drawn_at(self, plan: Plan, border: int, side: int) -> Step | None:

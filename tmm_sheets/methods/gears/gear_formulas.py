@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.arithmetic import halved
 from tmm_sheets.construction.expression import Reals, primitive
 from tmm_sheets.construction.step import Given, GivenNumber, Kind, Plan, Rule, Step, StepTable
 from tmm_sheets.methods.gears.rack import Rack
@@ -100,21 +101,12 @@ def fillet_start(rho: Reals, rb: Reals, rf: Reals) -> Reals:
 def _angle(rho: float, rb: float, rf: float, half: float) -> float:
     """Angle between the tooth's axis and the centre of its fillet."""
     t = float(fillet_start(rho, rb, rf))
-    if t < 0:
-        return half + asin(rho / (rf + rho))
-    return half - t / rb + atan((t + rho) / rb)
+    return half + asin(rho / (rf + rho)) if t < 0 else half - t / rb + atan((t + rho) / rb)
 
 
 def _largest(fits: Callable[[float], bool], rho: float) -> float:
     """The radius, or the largest below it that fits; NaN when none does."""
-    if fits(rho):
-        return rho
-    low, high = 0.0, rho
-    if not fits(low):
-        return float("nan")
-    while low < (middle := (low + high) / 2) < high:
-        low, high = (middle, high) if fits(middle) else (low, middle)
-    return low
+    return rho if fits(rho) else halved(fits, 0.0, rho)[0] if fits(0.0) else float("nan")
 
 
 @primitive("largest fillet", "real")

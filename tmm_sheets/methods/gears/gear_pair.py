@@ -84,8 +84,7 @@ class GearPair(PairGeometry):
     @cached_property
     def generating(self) -> Plan:
         """Positions of the rack that cuts the pinion, from the tip of a flank to where it leaves the involute."""
-        w = self.pinion
-        return rack.drawn_positions(self.rack_sizes, w.step("r"), self.step("alpha"), POSITIONS - 1)
+        return rack.drawn_positions(self.rack_sizes, self.pinion.step("r"), self.step("alpha"), POSITIONS - 1)
 
     @planned("gear-rack-sizes", marked("Sizes of the generating rack"), "mm")
     def rack_sizes(self, plan: Plan) -> None:
@@ -261,8 +260,7 @@ class ToothShape:
         return np.concatenate(parts)
 
     def _arc(self, radius: float, begin: float, end: float, step: float) -> Points:
-        n = max(int(np.ceil(abs(end - begin) * radius / step)), 2)
-        angles = np.linspace(begin, end, n + 1)
+        angles = np.linspace(begin, end, max(int(np.ceil(abs(end - begin) * radius / step)), 2) + 1)
         return np.asarray(self.centre + radius * self.axis * np.exp(1j * self.side * angles))
 
 

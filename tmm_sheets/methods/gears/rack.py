@@ -137,10 +137,10 @@ class Rack:
             return phase(point) - (self.tooth_half - tan(acos(ratio)) + acos(ratio))
 
         # The cut begins outside the involute and goes down to the base circle: it crosses the involute between.
-        at_base = _bisect(lambda normal: self.rb - abs(self._tip_cut(normal)), self.alpha, pi / 2)
+        _, at_base = ar.halved(lambda normal: self.rb < abs(self._tip_cut(normal)), self.alpha, pi / 2)
         if outside(at_base) >= 0:
             return 0.0
-        crossing = abs(self._tip_cut(_bisect(lambda normal: -outside(normal), self.alpha, at_base)))
+        crossing = abs(self._tip_cut(ar.halved(lambda normal: outside(normal) > 0, self.alpha, at_base)[1]))
         return sqrt((crossing - self.rb) * (crossing + self.rb))
 
     def last_normal(self, start: float) -> float:
@@ -148,14 +148,7 @@ class Rack:
         if not self.undercut:
             return self.alpha
         radius = sqrt(self.rb**2 + start**2)
-        return _bisect(lambda normal: radius - abs(self._tip_cut(normal)), self.alpha, pi / 2)
-
-
-def _bisect(f: Any, low: float, high: float) -> float:
-    """Where an increasing sign change of ``f`` lies, to the last bit."""
-    while low < (middle := (low + high) / 2) < high:
-        low, high = (middle, high) if f(middle) < 0 else (low, middle)
-    return high
+        return ar.halved(lambda normal: radius < abs(self._tip_cut(normal)), self.alpha, pi / 2)[1]
 
 
 @primitive("point within limits")

@@ -136,8 +136,7 @@ class Train:
 
     def stands(self, name: str) -> bool:
         """True for what is held in the frame; a planet on a carrier that does not turn moves along with it."""
-        held = {self.link(k) for k, speed in self.data.speeds.items() if not speed}
-        return self.link(name) in held & self.axes.keys()
+        return self.link(name) in {self.link(k) for k, speed in self.data.speeds.items() if not speed} & self.axes.keys()
 
     def pitch(self, mesh: Mesh) -> Step:
         """Diameter of the central wheel's pitch circle in a mesh, mm."""

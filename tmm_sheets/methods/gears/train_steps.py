@@ -232,9 +232,8 @@ class Kinematics:
         train, links = self.train, self.train.equations[0]
         place = {name: links.index(train.link(name)) for name in train.names} | {FRAME: -1}
         known = train.given
-        row = [len(links), len(known), *(place[k] for k in known)]
-        for m in train.meshes:
-            row += [place[m.central], place[m.planet], place[m.carrier], m.sign]
+        meshes = (x for m in train.meshes for x in (place[m.central], place[m.planet], place[m.carrier], m.sign))
+        row = [len(links), len(known), *(place[k] for k in known), *meshes]
         structure = Given(np.array(row, dtype=float), f"{self.data.part}.mesh", over="curve")
         return (float(place[name]), structure, *(z for m in train.meshes for z in self.teeth(m)),
                 *(self.plan[f"n{k}"] for k in known))
@@ -418,6 +417,5 @@ def speeds_plan(velocities: Plan, distance: float, part: str) -> Plan:
     pole = plan.add("P", GIVEN, given, say=tr("Mark the pole {name}."))
     origin = plan.add("0", GIVEN, 0j, say=tr("Above the pole mark the origin {name} on the axis of the speeds of rotation."))
     for line in (step for step in velocities if step.rule is RAY):
-        end = plan.add(line.name, PARALLEL, pole, line, origin)
-        plan.add(f"n{line.name}", READ, end, origin, pole)
+        plan.add(f"n{line.name}", READ, plan.add(line.name, PARALLEL, pole, line, origin), origin, pole)
     return plan

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.expression import Floats
+from tmm_sheets.construction.step import Plan
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups.contexts import SWEEP, TOUCH, AssemblyLimit
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
@@ -68,7 +69,8 @@ def check_turn(mechanism: Mechanism, moving: str = "") -> None:
     CannotBuild
         naming the groups that do not assemble, or come to a dead position.
     """
-    passed = check_assembly(mechanism, Cycle((), np.empty(0), 0.0, mechanism.crank.sense, 2 * np.pi, None, None))
+    unnumbered = Cycle((), np.empty(0), 0.0, mechanism.crank.sense, 2 * np.pi, None, None, Plan("cycle", "", ""))
+    passed = check_assembly(mechanism, unnumbered)
     if moving and passed:
         raise CannotBuild("\n".join(map(str, passed)),
                           tell("the strokes of {moving} cannot be found: it turns back at once there, or has no speed; change a "
@@ -252,8 +254,7 @@ class _Search:
             ends = int(np.flatnonzero(~(past >= 0))[0]) if (~(past >= 0)).any() else -1
             # Counted on from the swing itself: it may begin beyond a whole turn's zero.
             way = edge - 2 * np.pi if step < 0 and edge > self.cycle.period else edge
-            angle = float(np.degrees(self.cycle.world(way)))
-            found.append(End(angle, ends, float(-past[ends]) if ends >= 0 else np.nan))
+            found.append(End(float(np.degrees(self.cycle.world(way))), ends, float(-past[ends]) if ends >= 0 else np.nan))
         return found[0], found[1]
 
     def dead(self, i: int) -> tuple[float, ...]:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import groupby
+from math import tau
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,9 @@ from tmm_sheets.construction.arithmetic import root
 from tmm_sheets.construction.expression import Floats, Reals, primitive
 from tmm_sheets.construction.step import Given, Plan, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.mechanism.groups.contexts import SWEEP
 from tmm_sheets.mechanism.model import Mechanism
+from tmm_sheets.numbers import NOISE, ROUNDING
 from tmm_sheets.words import marked, tell, tr
 
 
@@ -73,7 +76,7 @@ class Cycle:
     period: float
     strokes: Strokes | None
     plan: Plan | None
-    numbering: Plan | None = None
+    numbering: Plan
     swings: bool = False
 
     @property
@@ -88,15 +91,11 @@ class Cycle:
 
     def angles(self, turned: Any) -> Any:
         """World angles of the crank for angles turned from position 0: a step for the numbered positions, a row for others."""
-        if turned is self.turned and self.numbering is not None:
-            return self.numbering["φ"]
-        return Given(self.world(turned), "crank angles", "φ_1", "rad")
+        return self.numbering["φ"] if turned is self.turned else Given(self.world(turned), "crank angles", "φ_1", "rad")
 
     def turned_row(self, turned: Any) -> Any:
         """Angles turned from position 0: a step for the numbered positions, a row for others."""
-        if turned is self.turned and self.numbering is not None:
-            return self.numbering["φ_п"]
-        return Given(turned, "angles turned", "φ", "rad")
+        return self.numbering["φ_п"] if turned is self.turned else Given(turned, "angles turned", "φ", "rad")
 
     @property
     def ring(self) -> Floats:
@@ -190,15 +189,8 @@ def named_angles(m: Mechanism, start: float, sense: float) -> Plan | None:
 
 
 
-TURN = 2 * np.pi
-SWEEP = 720
-"""Angles per turn at which an output is looked at before its reversals are found exactly."""
-STILL = 1e-12
-"""Share of the greatest speed below which an output stands still: what is left of zero by rounding."""
 SHALLOW = 0.01
 """Share of the greatest speed below which a minimum between the angles of the sweep may hide two reversals."""
-EQUAL = 1e-9
-"""Share of the way by which two extremes may differ and be the same one."""
 
 
 @dataclass(frozen=True)
@@ -220,7 +212,7 @@ class Run:
         return replace(self, begin=self.begin + angle, end=self.end + angle, stroke=self.stroke + strokes)
 
 
-def runs_of(speed: Callable[[Floats], Any], turn: float = TURN) -> list[Run]:
+def runs_of(speed: Callable[[Floats], Any], turn: float = tau) -> list[Run]:
     """Runs of one turn from the sign of a speed, a periodic function of the angles turned, rad, shape (n,) to shape (n,).
 
     One run if the output never turns back, none where the speed is not defined all the way round.
@@ -229,7 +221,7 @@ def runs_of(speed: Callable[[Floats], Any], turn: float = TURN) -> list[Run]:
     v = np.asarray(speed(t))
     if np.isnan(v).any():
         return []
-    still = STILL * float(np.abs(v).max())
+    still = ROUNDING * float(np.abs(v).max())
     t, v = _with_dips(speed, t, v, still, turn)
     signs = np.where(np.abs(v) <= still, 0, np.sign(v)).astype(int).tolist()
     moving = [i for i, sign in enumerate(signs) if sign]
@@ -278,7 +270,7 @@ def in_strokes(runs: Sequence[Run], ways: Sequence[float] | Floats) -> list[Run]
     Runs without a way from one extreme to another are one idle stroke.
     """
     low, high = float(np.min(ways)), float(np.max(ways))
-    near = EQUAL * (high - low)
+    near = NOISE * (high - low)
     # The extremes in their order: each is the begin of a run.
     marks = [(k, +1 if way >= high - near else -1) for k, way in enumerate(ways) if way >= high - near or way <= low + near]
     working = [False] * len(runs)
@@ -295,24 +287,23 @@ def in_strokes(runs: Sequence[Run], ways: Sequence[float] | Floats) -> list[Run]
     for i, turned in order:
         number += last is None or working[i] != working[last]
         last = i
-        result.append(replace(runs[i], stroke=number, working=working[i]).later(TURN * turned))
+        result.append(replace(runs[i], stroke=number, working=working[i]).later(tau * turned))
     return result
 
 
 def working_stroke(runs: Iterable[Run]) -> tuple[float, float]:
     """Begin and end of the working stroke, of several the longest; there must be one."""
     strokes = [list(of) for _, of in groupby((r for r in runs if r.working), key=lambda r: r.stroke)]
-    spans = [(of[0].begin, of[-1].end) for of in strokes]
-    return max(spans, key=lambda s: s[1] - s[0])
+    return max([(of[0].begin, of[-1].end) for of in strokes], key=lambda s: s[1] - s[0])
 
 
 def over_cycle(runs: Sequence[Run], period: float, first: float = 0.0) -> tuple[Run, ...]:
     """The runs of one turn over all turns of the cycle, numbered from the stroke that begins nearest to ``first``, rad."""
-    turns = round(period / TURN)
+    turns = round(period / tau)
     per_turn = runs[-1].stroke + 1
-    every = [r.later(TURN * n, per_turn * n) for n in range(turns) for r in runs]
+    every = [r.later(tau * n, per_turn * n) for n in range(turns) for r in runs]
     begins = [i for i, r in enumerate(every) if i == 0 or r.stroke != every[i - 1].stroke]
-    start = min(begins, key=lambda i: abs(np.angle(np.exp(1j * (every[i].begin - first) * TURN / period))))
+    start = min(begins, key=lambda i: abs(np.angle(np.exp(1j * (every[i].begin - first) * tau / period))))
     shift, strokes = every[start].stroke, per_turn * turns
     ordered = every[start:] + [r.later(period) for r in every[:start]]
     return tuple(replace(r, stroke=(r.stroke - shift) % strokes) for r in ordered)

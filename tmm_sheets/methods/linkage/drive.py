@@ -15,7 +15,7 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.expression import Floats, Reals, primitive
 from tmm_sheets.construction.indices import on_link
-from tmm_sheets.construction.step import Given, GivenNumber, Helper, Plan, Rule, Step
+from tmm_sheets.construction.step import Given, GivenNumber, Helper, Plan, Rule, Step, StepTable, record
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups.contexts import mm
 from tmm_sheets.mechanism.groups.dead_centres import PIN_ANGLE
@@ -27,12 +27,6 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.motion import Accelerations, MotionPolygon, Velocities
     from tmm_sheets.methods.linkage.positions import Positions
 
-EQUAL_STROKE = Rule("equal parts of a stroke", lambda start, end, parts, number: start + (end - start) / parts * number,
-                    ("ordinate", "ordinate", "number", "number"), "ordinate",
-                    marked("Divide the stroke of the input from {0} to {1} into {2} equal parts: {name} = {value}."), unit="m",
-                    exact=True)
-
-
 @primitive("angle turned to the crank pin", "real")
 def _turned(centre: Any, first: Any, pin: Any, sense: Any) -> Any:
     """Angle from one place of the crank pin about a centre to another, in the sense of rotation; it may be a little less than 0."""
@@ -40,12 +34,22 @@ def _turned(centre: Any, first: Any, pin: Any, sense: Any) -> Any:
     return np.mod(sense * np.arctan2(ar.cross(begin, r), ar.dot(begin, r)) + 1.0, 2 * np.pi) - 1.0
 
 
-TURNED = Rule("angle turned between two places of the crank pin", _turned, ("point", "point", "point", "number"), "angle",
-              marked("Measure the angle that the crank has turned from {1} to {2}: {name} = {value}."), unit="rad", exact=True)
-FIRST_ANGLE = Rule("angle of the crank where an input begins", PIN_ANGLE.compute, ("point", "point"), "angle",
-                   marked("Measure the angle of {0}{1}: the crank begins at {name} = {value}."), unit="rad", exact=True)
-WORLD = Rule("crank angle behind an input", lambda start, sense, turned: start + sense * turned, ("angle", "number", "angle"),
-             "angle", marked("Angle of the crank {name} = {0} + {1}·{2} = {value}."), unit="rad", exact=True)
+CYCLE: StepTable = {
+    "s": ("_start _end _parts _number", "", Rule(
+        "equal parts of a stroke", lambda start, end, parts, number: start + (end - start) / parts * number,
+        ("ordinate", "ordinate", "number", "number"), "ordinate",
+        marked("Divide the stroke of the input from {0} to {1} into {2} equal parts: {name} = {value}."), unit="m", exact=True)),
+    "φ_0": ("_centre _first", "", Rule(
+        "angle of the crank where an input begins", PIN_ANGLE.compute, ("point", "point"), "angle",
+        marked("Measure the angle of {0}{1}: the crank begins at {name} = {value}."), unit="rad", exact=True)),
+    "φ_п": ("_centre _first _pin _sense", lambda: tr("φ_t"), Rule(
+        "angle turned between two places of the crank pin", _turned, ("point", "point", "point", "number"), "angle",
+        marked("Measure the angle that the crank has turned from {1} to {2}: {name} = {value}."), unit="rad", exact=True)),
+    "φ": ("φ_0 _sense φ_п", "", Rule(
+        "crank angle behind an input", lambda start, sense, turned: start + sense * turned, ("angle", "number", "angle"), "angle",
+        marked("Angle of the crank {name} = {0} + {1}·{2} = {value}."), unit="rad", exact=True)),
+}
+"""The crank angles at equal parts of the stroke of an input; the underlines keep apart what hinges and guides are called."""
 GIVEN_RATE = Rule("given velocity of the input", lambda pole, u, sense, v: pole + sense * v * u,
                   ("point", "direction", "number", "number"), "point",
                   marked("From {0}, along {1}, lay off the given velocity of the input: point {name}."),
@@ -144,7 +148,9 @@ def input_cycle(m: Mechanism, positions: int, *, zero: str = "0") -> Cycle:
     labels = (zero, *map(str, range(1, positions + 1)))
     plan = Plan("cycle", tr("Numbering of the positions"), "m", labels)
     number = Given(np.arange(positions + 1, dtype=np.float64), "numbers of the positions")
-    place = plan.add("s", EQUAL_STROKE, *drive.place, GivenNumber(positions, "cycle.positions"), number)
+    begin, end = drive.place
+    place = record(plan, "s", CYCLE, given={
+        "_start": begin, "_end": end, "_parts": GivenNumber(positions, "cycle.positions"), "_number": number})
     centre = plan.add(crank.pivot, rules.GIVEN, m.fixed[crank.pivot])
     if drive.slides:
         guide: Guide = m.guides[drive.group.guides[0]]
@@ -160,10 +166,10 @@ def input_cycle(m: Mechanism, positions: int, *, zero: str = "0") -> Cycle:
         far = plan.add(far_name, rules.ALONG, through, u, at)
         return plan.add(name, rules.ARC_ARC, far, drive.group.lengths[0], centre, crank.length, drive.side)
 
-    first = pin(f"{crank.pin}′", f"{drive.far}′", drive.place[0])
-    start = plan.add("φ_0", FIRST_ANGLE, centre, first)
-    turned = plan.add("φ_п", TURNED, centre, first, pin(crank.pin, drive.far, place), crank.sense, symbol=tr("φ_t"))
-    plan.add("φ", WORLD, start, crank.sense, turned)
+    given = {"_centre": centre, "_first": pin(f"{crank.pin}′", f"{drive.far}′", begin), "_sense": crank.sense}
+    start = record(plan, "φ_0", CYCLE, given=given)
+    record(plan, "φ_п φ", CYCLE, given=given | {"_pin": pin(crank.pin, drive.far, place)})
+    turned = plan["φ_п"]
     return Cycle(labels, turned.value, float(start.value), crank.sense, float(turned.value[-1]), None, None, plan, swings=True)
 
 
@@ -248,8 +254,7 @@ def place_of_input(pos: Positions) -> Step:
     far = pos.points[drive.far]
     if not drive.slides:
         return pos.plan.length(far, pos.points[m.crank.pin])
-    guide = m.guides[drive.group.guides[0]]
-    return pos.plan.auxiliary("s", PLACE, far, guide.through, pos.directions[drive.link])
+    return pos.plan.auxiliary("s", PLACE, far, m.guides[drive.group.guides[0]].through, pos.directions[drive.link])
 
 
 PLACE = Rule("place on a guide", lambda at, start, u: ((at - start) * np.conjugate(u)).real, ("point", "point", "direction"),

@@ -91,7 +91,7 @@ class Kinetostatics:
     plans: dict[str, ForcePlan] = field(default_factory=dict)
     from_moments: list[TangentialPart] = field(default_factory=list)
     parts: dict[str, Step] = field(default_factory=dict)
-    balancing: Step | None = None
+    balancing: Step = field(init=False)
     friction: Friction | None = None
     limits: dict[str, Given] = field(default_factory=dict)
 
@@ -376,7 +376,6 @@ class InputForce:
 
     def by_statics(self, k: Kinetostatics, by_lever: Step, line: Step) -> Step:
         """The force by the force plans: that of the lever, and what balances the moment that they leave on the crank."""
-        assert k.balancing is not None
         omega = k.accelerations.velocities.omega[k.positions.mechanism.crank.link]
         return k.plan.add(k.plan.named(self.name), WITH_REST, by_lever, k.balancing, omega, self.drive.speed, line)
 
@@ -472,8 +471,7 @@ def _crank(k: Kinetostatics, driver: GearForce | InputForce | None) -> None:
         k.balancing = k.plan.add("Mур", BALANCING if known else OPPOSITE_COUPLE, total, *known, symbol=tr("Mb"))
     else:
         at = contact_point(pos, driver)
-        name = k.plan.named(driver.name)
-        k.balancing = k.plan.add(name, DRIVING_FORCE, total, pivot, at, driver.line(c.sense), *known)
+        k.balancing = k.plan.add(k.plan.named(driver.name), DRIVING_FORCE, total, pivot, at, driver.line(c.sense), *known)
         load = Load(symbol(driver.name), c.link, at, k.balancing, "applied")
         k.loads[c.link].append(load)
         tail = plan.lay_loads(tail, [load])

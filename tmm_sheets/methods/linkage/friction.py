@@ -12,35 +12,37 @@ import numpy as np
 
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.rules import GIVEN_NUMBER
-from tmm_sheets.construction.step import Given, Helper, Plan, Rule, SearchCount, Step
+from tmm_sheets.construction.step import Given, Helper, Plan, Rule, SearchCount, Step, StepTable, record
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups.contexts import OPPOSITE_COUPLE
 from tmm_sheets.mechanism.model import Mechanism, Pair
 from tmm_sheets.methods.linkage.forces import Kinetostatics
 from tmm_sheets.methods.linkage.motion import Sliding, Velocities, ordered
+from tmm_sheets.numbers import NOISE
 from tmm_sheets.words import marked, tell, tr
 
 _SOURCE = "000, 4"
-CIRCLE = Rule("circle of friction", lambda f, r: f * r, ("number", "length"), "length",
-              "", unit="m", source=_SOURCE, exact=True)
-ANGLE = Rule("angle of friction", np.arctan, ("number",), "angle", "",
-             unit="rad", source=_SOURCE, exact=True)
-RELATIVE_TURNING = Rule("relative angular velocity", lambda a, b: a - b, ("number", "number"), "number",
-                        "", unit="rad/s")
-STILL = 1e-9
-"""Share of the crank's own motion below which the links of a pair do not move on each other."""
+OF_PAIR: StepTable = {
+    "ρ#": ("f r", "ρ_{#}", Rule(
+        "circle of friction", lambda f, r: f * r, ("number", "length"), "length", "", unit="m", source=_SOURCE, exact=True)),
+    "φ": ("f", "", Rule("angle of friction", np.arctan, ("number",), "angle", "", unit="rad", source=_SOURCE, exact=True)),
+    "ω#": ("ω_j ω_k", "ω_{#}", Rule(
+        "relative angular velocity", lambda a, b: a - b, ("number", "number"), "number", "", unit="rad/s")),
+    "Mтр#": ("ρ_hinge F ω# ω_1", lambda: tr("Mf{index}").format(index="#"), Rule(
+        "moment of friction",
+        lambda rho, force, w, omega: -(np.sign(np.maximum(np.abs(w) - NOISE * omega, 0.0)) * np.sign(w)) * rho * force,
+        ("length", "number", "number", "number"), "number",
+        marked("Moment of friction {name} = ρ·F = {0}·{1} = {value} N·m, against the relative turning."), unit="N*m",
+        source=_SOURCE)),
+    "φ#": ("φ side sliding l_1 ω_1", "φ_{#}", Rule(
+        "deviation by the angle of friction",
+        lambda phi, side, v, length, omega: np.sign(np.maximum(np.abs(v) - NOISE * length * omega, 0.0)) * side * phi,
+        ("angle", "number", "vector", "length", "number"), "angle",
+        marked("The reaction deviates from the normal by {name} = {value}, against the sliding."), unit="rad", source=_SOURCE)),
+}
+"""Friction in a pair; of its circle, and of the angle of all sliding pairs, there is one.
 
-
-MOMENT = Rule("moment of friction", lambda rho, force, w, omega: -(
-                  np.sign(np.maximum(np.abs(w) - STILL * omega, 0.0)) * np.sign(w)) * rho * force,
-              ("length", "number", "number", "number"), "number",
-              marked("Moment of friction {name} = ρ·F = {0}·{1} = {value} N·m, against the relative turning."), unit="N*m",
-              source=_SOURCE)
-DEVIATION = Rule("deviation by the angle of friction",
-                 lambda phi, side, v, length, omega: np.sign(np.maximum(np.abs(v) - STILL * length * omega, 0.0)) * side * phi,
-                 ("angle", "number", "vector", "length", "number"), "angle",
-                 marked("The reaction deviates from the normal by {name} = {value}, against the sliding."), unit="rad",
-                 source=_SOURCE)
+Links that move on each other by no more than :data:`NOISE` of the crank's own motion do not."""
 DEVIATED = Rule("normal with friction", lambda n, angle: n * (np.cos(angle) + 1j * np.sin(angle)), ("direction", "angle"),
                 "direction", marked("At the angle {1} to the normal {0} draw the direction {name} of the reaction."))
 
@@ -78,7 +80,7 @@ class Friction:
     hinges: dict[str, str] = field(default_factory=dict)
     touches: dict[str, Step] = field(default_factory=dict)
     powers: dict[str, Step] = field(default_factory=dict)
-    power_plan: Plan | None = None
+    power_plan: Plan = field(init=False)
     approximations: int = 0
 
     def deviated(self, j: str, k: str, across: Step, plan: Plan) -> Step:
@@ -95,13 +97,11 @@ class Friction:
     @property
     def total(self) -> Step:
         """Power of all friction, W, not above zero."""
-        assert self.power_plan is not None
         return self.power_plan["N_тр"]
 
     @property
     def on_crank(self) -> Step:
         """The same as a moment on the crank, N m."""
-        assert self.power_plan is not None
         return self.power_plan["Mтр"]
 
 
@@ -124,26 +124,24 @@ def friction(given: Coefficients, vel: Velocities, sliding: Sliding, rows: Rows,
         index = pair_index(j, k)
         if pair.motion == "rotation" and given.turning and given.radii.get(hinge):
             if hinge not in of.radii:
-                of.radii[hinge] = plan.add(f"ρ{hinge}", CIRCLE, given.turning, given.radii[hinge], symbol=f"ρ_{{{hinge}}}")
-            w = of.turning[index] = plan.add(f"ω{index}", RELATIVE_TURNING, vel.omega[j], vel.omega[k], symbol=f"ω_{{{index}}}")
+                of.radii[hinge] = record(plan, "ρ#", OF_PAIR, wheel=hinge, given={"f": given.turning, "r": given.radii[hinge]})
             force = Given(rows[index], f"reaction F{index}", f"F_{{{index}}}", "N", choice=criterion)
-            moment = plan.add(f"Mтр{index}", MOMENT, of.radii[hinge], force, w, m.crank.speed,
-                              symbol=tr("Mf{index}").format(index=index))
+            moment = of.moments[index] = record(plan, "ω# Mтр#", OF_PAIR, wheel=index, given={
+                "ω_j": vel.omega[j], "ω_k": vel.omega[k], "ρ_hinge": of.radii[hinge], "F": force, "ω_1": m.crank.speed})
+            of.turning[index] = plan[f"ω{index}"]
             opposite = plan.add(f"Mтр{pair_index(k, j)}", OPPOSITE_COUPLE, moment,
                                 symbol=tr("Mf{index}").format(index=pair_index(k, j)))
-            of.moments[index] = moment
             for link, couple in ((j, moment), (k, opposite)):
                 of.hinges[couple.name] = hinge
                 if link != m.frame:
                     of.couples.setdefault(link, []).append(couple)
         elif pair.motion == "translation" and given.sliding:
             if of.angle is None:
-                of.angle = plan.add("φ", ANGLE, given.sliding)
+                of.angle = record(plan, "φ", OF_PAIR, given={"f": given.sliding})
             of.sliding[index] = sliding.velocities[index]
             side = Given(rows[index], f"side of F{index}", choice=criterion)
-            turn = plan.add(f"φ{index}", DEVIATION, of.angle, side, sliding.velocities[index], m.crank.length, m.crank.speed,
-                            symbol=f"φ_{{{index}}}")
-            of.deviations[index] = of.deviations[pair_index(k, j)] = turn
+            of.deviations[index] = of.deviations[pair_index(k, j)] = record(plan, "φ#", OF_PAIR, wheel=index, given={
+                "side": side, "sliding": sliding.velocities[index], "l_1": m.crank.length, "ω_1": m.crank.speed})
         else:
             continue
         of.pairs[index] = pair
@@ -162,21 +160,25 @@ def _touch_lines(args: Any, value: Any) -> tuple[Helper, ...]:
     return circle, Helper("line", centre, value), Helper("line", value, value - REACH * radius * force / abs(force))
 
 
-TOUCH = Rule("reaction that touches the circle of friction",
-             lambda centre, force, moment, radius: centre - 1j * force * moment / np.abs(force) ** 2,
-             ("point", "force", "number", "length"), "point",
-             marked("About {0} draw the circle of friction with the radius {3}; the line of the reaction {1} touches it at "
-                    "{name}."),
-             _touch_lines, unit="m")
-POWER_OF_MOMENT = Rule("power of a moment of friction", lambda m, w: m * w, ("number", "number"), "number",
-                       "", unit="W")
-POWER_OF_SLIDING = Rule("power of a reaction on sliding", lambda f, v: (f * np.conj(v)).real, ("force", "vector"), "number",
-                        marked("Power of friction {name} = F·V·cos(F̅, V̅) = {value} W."), unit="W")
+OF_POWER: StepTable = {
+    "T#": ("hinge F M ρ_hinge", "T_{#}", Rule(
+        "reaction that touches the circle of friction",
+        lambda centre, force, moment, radius: centre - 1j * force * moment / np.abs(force) ** 2,
+        ("point", "force", "number", "length"), "point",
+        marked("About {0} draw the circle of friction with the radius {3}; the line of the reaction {1} touches it at "
+               "{name}."), _touch_lines, unit="m")),
+    "N#": ("F sliding", "", Rule(
+        "power of a reaction on sliding", lambda f, v: (f * np.conj(v)).real, ("force", "vector"), "number",
+        marked("Power of friction {name} = F·V·cos(F̅, V̅) = {value} W."), unit="W")),
+    "Mтр": ("N_тр ω_1", lambda: tr("Mf"), Rule(
+        "moment of friction reduced to the crank", lambda power, omega: power / omega, ("number", "number"), "number",
+        marked("Friction in all pairs, reduced to the input link by its power: {formula}."), unit="N*m")),
+}
+TURNING: StepTable = {
+    "N#": ("M ω", "", Rule("power of a moment of friction", lambda m, w: m * w, ("number", "number"), "number", "", unit="W")),
+}
 ALL_POWER = Rule("power of all friction", lambda *powers: reduce(add, powers), ("number",), "number",
                  marked("Power of friction in all pairs {name} = {value} W."), unit="W")
-ON_CRANK = Rule("moment of friction reduced to the crank", lambda power, omega: power / omega, ("number", "number"), "number",
-                marked("Friction in all pairs, reduced to the input link by its power: {formula}."),
-                unit="N*m")
 MOST, DAMPED = 400, 60
 """So many approximations at most; from the second number on by half steps."""
 NEAR = 1e-13
@@ -256,12 +258,15 @@ def _powers(of: Friction, vel: Velocities, found: Kinetostatics) -> None:
     plan = of.power_plan = Plan("friction-power", tr("Reactions and power of friction"), "m", of.plan.labels, search=search)
     plan.add("n", GIVEN_NUMBER, Given(float(of.approximations), "approximations", over="none", choice="until the reactions stay"))
     for index, pair in of.pairs.items():
+        force = found.reactions[f"F{index}"]
         if index in of.moments:
             hinge = pair.name.rstrip("′″")
-            of.touches[index] = plan.add(f"T{index}", TOUCH, vel.positions.points[hinge], found.reactions[f"F{index}"],
-                                         of.moments[index], of.radii[hinge], symbol=f"T_{{{index}}}")
-        of.powers[index] = (plan.add(f"N{index}", POWER_OF_MOMENT, of.moments[index], of.turning[index]) if index in of.moments else
-                            plan.add(f"N{index}", POWER_OF_SLIDING, found.reactions[f"F{index}"], of.sliding[index]))
+            of.powers[index] = record(plan, "T# N#", TURNING, OF_POWER, wheel=index, given={
+                "hinge": vel.positions.points[hinge], "F": force, "M": of.moments[index], "ω": of.turning[index],
+                "ρ_hinge": of.radii[hinge]})
+            of.touches[index] = plan[f"T{index}"]
+        else:
+            of.powers[index] = record(plan, "N#", OF_POWER, wheel=index, given={"F": force, "sliding": of.sliding[index]})
     parts: list[Any] = list(of.powers.values()) or [Given(np.zeros(len(of.plan.labels)), "no friction", unit="W")]
-    total = plan.add("N_тр", ALL_POWER, *parts, symbol=tr("N_f"))
-    plan.add("Mтр", ON_CRANK, total, vel.omega[crank.link], symbol=tr("Mf"))
+    plan.add("N_тр", ALL_POWER, *parts, symbol=tr("N_f"))
+    record(plan, "Mтр", OF_POWER, given={"ω_1": vel.omega[crank.link]})

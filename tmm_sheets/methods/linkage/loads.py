@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, reduce
 from itertools import pairwise
-from math import ceil, floor
+from math import ceil, floor, tau
 from operator import add, mul
 from typing import Any, NoReturn
 
@@ -22,16 +22,16 @@ from tmm_sheets.construction.arithmetic import Curve, ascending, inner_slopes, r
 from tmm_sheets.construction.expression import Directions, Floats, Points, Reals, Signs, primitive
 from tmm_sheets.construction.step import Given, Plan, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.mechanism.groups.contexts import SWEEP
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
-from tmm_sheets.methods.linkage.cycle import SWEEP, TURN, Cycle, Run, Strokes, in_strokes, over_cycle, runs_of
+from tmm_sheets.methods.linkage.cycle import Cycle, Run, Strokes, in_strokes, over_cycle, runs_of
 from tmm_sheets.methods.linkage.motion import Watched
 from tmm_sheets.methods.linkage.positions import Positions
+from tmm_sheets.numbers import ROUNDING
 from tmm_sheets.words import marked, tell
 
 STROKES = "strokes of forces"
-NEAR = 1e-12
-"""Angles closer than this are the same, rad."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ WAY = Rule("fraction of a straight way",
 def swing_done(u: Directions, sense: float, low: float, swing: float) -> Any:
     """How far a direction has turned from one end of its swing, ``low`` (rad, in the sense of the working stroke), to the other."""
     spare = np.pi - swing / 2
-    return np.clip((np.mod(sense * np.angle(u) - low + spare, TURN) - spare) / swing, 0.0, 1.0)
+    return np.clip((np.mod(sense * np.angle(u) - low + spare, tau) - spare) / swing, 0.0, 1.0)
 
 
 SWING = Rule("fraction of a swing", swing_done, ("direction", "number", "angle", "angle"), "number",
@@ -95,11 +95,11 @@ class OutputMotion:
         for i, r in enumerate(self.runs):
             into, width = np.mod(t - r.begin, self.period), r.end - r.begin
             if side < 0:
-                into = np.where(into <= NEAR, into + self.period, into)
-                inside = into < width + NEAR
+                into = np.where(into <= ROUNDING, into + self.period, into)
+                inside = into < width + ROUNDING
             else:
-                into = np.where(self.period - into < NEAR, 0.0, into)
-                inside = into < width - NEAR if side > 0 else (into > NEAR) & (into < width - NEAR)
+                into = np.where(self.period - into < ROUNDING, 0.0, into)
+                inside = into < width - ROUNDING if side > 0 else (into > ROUNDING) & (into < width - ROUNDING)
             found = np.where(inside, i, found)
         return found
 
@@ -110,7 +110,7 @@ class OutputMotion:
             return []
         ends = sorted(float(x) for x in self.travelled(np.array([run.begin, run.end])))
         turns = range(floor(ends[0] - fraction), ceil(ends[1] - fraction) + 1) if self.endless else (0,)
-        levels = [fraction + k for k in turns if ends[0] + NEAR < fraction + k < ends[1] - NEAR]
+        levels = [fraction + k for k in turns if ends[0] + ROUNDING < fraction + k < ends[1] - ROUNDING]
 
         def ahead(level: float) -> Callable[[Floats], Floats]:
             return lambda t: np.asarray(sense * (self.travelled(t) - level))
@@ -135,19 +135,19 @@ class OutputMotion:
         x = np.asarray(self.travelled(np.asarray(turned, dtype=float)))
         if self.endless:
             x = np.mod(x, 1.0)
-            x = np.where(x > 1 - NEAR, 0.0, x)
+            x = np.where(x > 1 - ROUNDING, 0.0, x)
         return x
 
     def follows(self, i: int) -> bool:
         """True where a run begins at the end of the one before it."""
-        return bool(abs(np.angle(np.exp(1j * (self.runs[i].begin - self.runs[i - 1].end) * 2 * np.pi / self.period))) < NEAR)
+        return bool(abs(np.angle(np.exp(1j * (self.runs[i].begin - self.runs[i - 1].end) * 2 * np.pi / self.period))) < ROUNDING)
 
 
 def distinct(angles: Iterable[float], period: float) -> tuple[float, ...]:
     """Angles in order, each once: two that differ by rounding are one, also across the end of the period."""
     kept: list[float] = []
-    for t in sorted(0.0 if period - t < NEAR else t for t in angles):
-        if not kept or t - kept[-1] > NEAR:
+    for t in sorted(0.0 if period - t < ROUNDING else t for t in angles):
+        if not kept or t - kept[-1] > ROUNDING:
             kept.append(t)
     return tuple(kept)
 
@@ -208,9 +208,9 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
         check_turn(m, link)
         _refuse(m, tell("link {link} does not turn all the time").format(link=link))
     # The angle from the whole turn: more than 180 degrees would not show in the angles of the reversals alone.
-    turned = ascending(np.append(np.linspace(0.0, TURN, SWEEP + 1), [r.begin for r in runs]))
+    turned = ascending(np.append(np.linspace(0.0, tau, SWEEP + 1), [r.begin for r in runs]))
     swept = np.unwrap(angle(turned))
-    turns = round(float(swept[-1] - swept[0]) / TURN)
+    turns = round(float(swept[-1] - swept[0]) / tau)
     if not turns and any(r.sense for r in runs):
         ways = np.interp([r.begin for r in runs], turned, swept)
         low, swing = float(ways.min()), float(np.ptp(ways))
@@ -218,15 +218,15 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
         path = Path(SWING, link, numbers, turning=True)
         return OutputMotion(over_cycle(in_strokes(runs, ways), cycle.period, first), path.travelled(at), cycle.period, path=path)
     way = 1 if turns >= 0 else -1
-    swept = way * (swept - swept[0]) / TURN
+    swept = way * (swept - swept[0]) / tau
 
     def round_and_round(t: Reals) -> Any:
-        nth, into = np.divmod(np.asarray(t, dtype=float), TURN)
-        part = way * (angle(into) - angle(np.zeros(1))[0]) / TURN
+        nth, into = np.divmod(np.asarray(t, dtype=float), tau)
+        part = way * (angle(into) - angle(np.zeros(1))[0]) / tau
         return part + np.round(np.interp(into, turned, swept) - part) + nth * abs(turns)
 
     # Each turn begins with position 0, where the way does.
-    cut = [p for r in runs for p in ((replace(r, end=TURN), Run(0.0, r.end - TURN, r.sense)) if r.end > TURN + NEAR else (r,))]
+    cut = [p for r in runs for p in ((replace(r, end=tau), Run(0.0, r.end - tau, r.sense)) if r.end > tau + ROUNDING else (r,))]
     whole = [replace(r, working=turns > 0) for r in sorted(cut, key=lambda r: r.begin)]
     return OutputMotion(over_cycle(whole, cycle.period, first), round_and_round, cycle.period, True, way)
 
@@ -283,10 +283,20 @@ class Applied:
     toward: complex
     law: Callable[[Any, int], Any]
     jumps: tuple[float, ...]
-    motion: OutputMotion | None = None
     diagrams: tuple[LoadDiagram, ...] = ()
     along: Any = None
     sign: Any = None
+
+    @property
+    def by_strokes(self) -> StrokeLaw:
+        """The law of a load that follows strokes."""
+        assert isinstance(self.law, StrokeLaw)
+        return self.law
+
+    @property
+    def motion(self) -> OutputMotion | None:
+        """The motion whose strokes the load follows; None of one that is the same all the time or given over the angle."""
+        return self.law.motion if isinstance(self.law, StrokeLaw) else None
 
     def record(self, plan: Plan, pos: Positions, turned: Any, side: int = 0, mark: str = "", chosen: Sequence[Given] = ()) -> Step:
         """The force or moment as a step of a plan, ``turned`` the angles from position 0 as a row or a step.
@@ -305,16 +315,15 @@ class Applied:
         Which way its diagrams are passed, the signs of the strokes that each of them acts on, and the travelled fractions where
         they do not follow from the positions. Nothing of a load that is given over the angle.
         """
-        law, motion = self.law, self.motion
+        law = self.law
         if not isinstance(law, StrokeLaw):
             return ()
-        assert motion is not None
         ahead, signs = law.strokes(turned, side)
         rows = [Given(ahead, f"sense of {self.name}", choice="which way its diagram is passed")]
         rows += [Given(sign, f"sign of {self.name}", choice="strokes it acts on, against or along the motion") for sign in signs]
-        if motion.path is None:
-            x = motion.fraction(turned)
-            x = np.where(ahead < 0, np.where(x < NEAR, 1.0, x), x)
+        if law.motion.path is None:
+            x = law.motion.fraction(turned)
+            x = np.where(ahead < 0, np.where(x < ROUNDING, 1.0, x), x)
             rows.append(Given(x, f"way of link {self.link}", choice="turns counted on"))
         return tuple(rows)
 
@@ -337,9 +346,7 @@ class Applied:
 
     def _way(self, plan: Plan, pos: Positions, chosen: Sequence[Given]) -> Any:
         """Travelled fractions, as a step where they follow from the positions."""
-        motion = self.motion
-        assert motion is not None
-        path = motion.path
+        path = self.by_strokes.motion.path
         if path is None:
             return chosen[-1]
         step = pos.directions[path.name] if path.turning else pos.points[path.name]
@@ -358,17 +365,15 @@ class Applied:
 
         Each over the first stroke that its diagram is given for, a working one if it can be, both sides of its jumps among them.
         """
-        law, motion = self.law, self.motion
-        assert isinstance(law, StrokeLaw)
-        assert motion is not None
-        acting = sorted(((run, table) for run, table in zip(motion.runs, law.tables, strict=True) if table is not None),
+        law = self.by_strokes
+        acting = sorted(((run, table) for run, table in zip(law.motion.runs, law.tables, strict=True) if table is not None),
                         key=lambda pair: (not pair[0].working, pair[0].begin))
         of_table: dict[tuple[tuple[float, ...], ...], list[Run]] = {}
         for run, table in acting:  # two that are alike are one
             of_stroke = of_table.setdefault((tuple(table[0]), tuple(table[1])), [run])
             if run is not of_stroke[0] and run.stroke == of_stroke[0].stroke:
                 of_stroke.append(run)
-        return [_between(runs[0].begin, runs[-1].end, self.jumps, motion.period) for runs in of_table.values()]
+        return [_between(runs[0].begin, runs[-1].end, self.jumps, law.motion.period) for runs in of_table.values()]
 
     def jump(self, turned: float) -> tuple[float, float, float] | None:
         """Values before and after an angle turned (rad) where they differ, and the one that counts there, N or N m.
@@ -450,7 +455,7 @@ def _curve(x: Reals, y: Reals, smooth: bool, period: float | None) -> Curve:
     jumps the slope is that of the only neighbour.
     """
     x, y = (np.asarray(v, dtype=float) for v in (x, y))
-    if period is not None and x[-1] - x[0] < period - NEAR:
+    if period is not None and x[-1] - x[0] < period - ROUNDING:
         x, y = np.append(x, x[0] + period), np.append(y, y[0])
     if len(x) < 2:
         x, y = np.repeat(x, 2), np.repeat(y, 2)
@@ -465,9 +470,9 @@ def read(curve: Curve, t: Reals, side: int = 0, period: float | None = None) -> 
     h = np.diff(x)
     if period is not None:
         t = np.mod(t - x[0], period) + x[0]
-        t = np.where(t - x[0] < NEAR, x[-1], t) if side < 0 else np.where(x[-1] - t < NEAR, x[0], t)
+        t = np.where(t - x[0] < ROUNDING, x[-1], t) if side < 0 else np.where(x[-1] - t < ROUNDING, x[0], t)
     for corner in x[:-1][h == 0]:  # what misses a jump by rounding stands on it
-        t = np.where(np.abs(t - corner) < NEAR, corner, t)
+        t = np.where(np.abs(t - corner) < ROUNDING, corner, t)
     k = np.clip(np.searchsorted(x, t, side="left" if side < 0 else "right") - 1, 0, len(h) - 1)
     s = np.clip((t - x[k]) / np.where(h[k] > 0, h[k], 1.0), 0.0, 1.0)
     if curve.law == "straight":
@@ -586,7 +591,7 @@ class StrokeLaw:
             if curve is not None:
                 ahead = (side or 1) * run.sense * motion.way
                 # The end of a turn is not the beginning of the next.
-                at = np.where(x < NEAR, 1.0, x) if motion.endless and ahead < 0 else x
+                at = np.where(x < ROUNDING, 1.0, x) if motion.endless and ahead < 0 else x
                 value = np.where(i == n, (self.signs[n] if signed else 1.0) * curve(at, ahead), value)
         return value
 

@@ -20,7 +20,7 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar, rules
 from tmm_sheets.construction.function import Replay
 from tmm_sheets.construction.indices import on_link, pair_index
-from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step, value_of
+from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step, StepTable, record, value_of
 from tmm_sheets.mechanism.groups.contexts import Turning
 from tmm_sheets.mechanism.model import Drive, Leg, Mechanism, Pair, StructuralGroup
 from tmm_sheets.methods.linkage.positions import SEARCHED, Passages, Positions, position_plan
@@ -435,16 +435,18 @@ def _number_alike(acc: Accelerations) -> None:
 
 def _free(plan: Plan, letter: str) -> str:
     """The letter itself, or with the first free number when the plan has it already."""
-    if letter not in plan:
-        return letter
-    return next(f"{letter}{i}" for i in range(2, 100) if f"{letter}{i}" not in plan)
+    return letter if letter not in plan else next(f"{letter}{i}" for i in range(2, 100) if f"{letter}{i}" not in plan)
 
 
-SLIDING_VELOCITY = Rule("sliding velocity", lambda a, b: a - b, ("point", "point"), "vector",
-                marked("Velocity of sliding {name} = {value}, the vector {1}{0} of the velocity polygon."), unit="m/s")
-SLIDING_CORIOLIS = Rule("Coriolis acceleration of sliding", lambda w, v: 2j * w * v, ("number", "vector"), "vector",
-                marked("Coriolis acceleration {name} = 2ω·V = {value}: the sliding velocity turned by 90° in the sense of ω."),
-                unit="m/s2")
+SLIDING: StepTable = {
+    "V#": ("slides there", "V_{#}", Rule(
+        "sliding velocity", lambda a, b: a - b, ("point", "point"), "vector",
+        marked("Velocity of sliding {name} = {value}, the vector {1}{0} of the velocity polygon."), unit="m/s")),
+    "a#к": ("ω V#", lambda: tr("a_{{{points}}}^c").format(points="#"), Rule(
+        "Coriolis acceleration of sliding", lambda w, v: 2j * w * v, ("number", "vector"), "vector",
+        marked("Coriolis acceleration {name} = 2ω·V = {value}: the sliding velocity turned by 90° in the sense of ω."),
+        unit="m/s2")),
+}
 
 
 class Sliding:
@@ -463,10 +465,9 @@ class Sliding:
     def _of(self, vel: Velocities, pair: Pair) -> None:
         j, k = ordered(vel.positions.mechanism, pair)
         at, index = pair.name.rstrip("′″"), pair_index(j, k)
-        v = self.plan.add(f"V{index}", SLIDING_VELOCITY, motion_at(vel, j, at), motion_at(vel, k, at), symbol=f"V_{{{index}}}")
-        self.velocities[index] = v
-        letters = tr("a_{{{points}}}^c").format(points=index)
-        self.coriolis[index] = self.plan.add(f"a{index}к", SLIDING_CORIOLIS, vel.omega[k], v, symbol=letters)
+        self.coriolis[index] = record(self.plan, "V# a#к", SLIDING, wheel=index, given={
+            "slides": motion_at(vel, j, at), "there": motion_at(vel, k, at), "ω": vel.omega[k]})
+        self.velocities[index] = self.plan[f"V{index}"]
 
 
 def ordered(m: Mechanism, pair: Pair) -> tuple[str, str]:
@@ -482,9 +483,7 @@ def ordered(m: Mechanism, pair: Pair) -> tuple[str, str]:
 
 def motion_at(vel: Velocities, link: str, at: str) -> Step:
     """Velocity of the point of a link that coincides with a point of the mechanism."""
-    if link == vel.positions.mechanism.frame:
-        return vel.pole
-    return vel.coincident.get(on_link(at, link), vel.points[at])
+    return vel.pole if link == vel.positions.mechanism.frame else vel.coincident.get(on_link(at, link), vel.points[at])
 
 
 # --- what searches ask at other angles ----------------------------------------------------------------------------------------

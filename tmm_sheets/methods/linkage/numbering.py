@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from math import tau
 from typing import Any
 
 import numpy as np
@@ -14,11 +15,10 @@ import numpy as np
 from tmm_sheets.construction.expression import Floats, primitive
 from tmm_sheets.construction.step import Given, GivenNumber, Plan, Rule, Step, StepTable, record
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.mechanism.groups.contexts import SWEEP
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
 from tmm_sheets.methods.linkage.cycle import (
-    SWEEP,
-    TURN,
     Cycle,
     Run,
     Strokes,
@@ -30,11 +30,10 @@ from tmm_sheets.methods.linkage.cycle import (
 )
 from tmm_sheets.methods.linkage.motion import OfAngles, Watched
 from tmm_sheets.methods.linkage.positions import Passages
+from tmm_sheets.numbers import NOISE
 from tmm_sheets.words import marked, tell, tr
 
 BY_ANGLE = marked('give the crank angle of position 0 instead: start = "90 deg"')
-SAME_PLACE = 1e-9
-"""Share of the crank's length within which distances are the same."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +56,7 @@ def way_of(m: Mechanism, watched: Watched, output: str, axis: complex, round_abo
         when the point goes round a fixed hinge and may not, or does not move that way.
     """
     sense, point, velocity = m.crank.sense, watched.point(output), watched.velocity(output)
-    path = np.asarray(point(sense * np.linspace(0.0, TURN, SWEEP + 1)))
+    path = np.asarray(point(sense * np.linspace(0.0, tau, SWEEP + 1)))
     hinge = None if np.isnan(path).any() else _hinge_of(m, path)
     straight = Way(lambda turned: (point(sense * turned) * np.conj(axis)).real,
                    lambda turned: (velocity(sense * turned) * np.conj(axis)).real)
@@ -65,13 +64,13 @@ def way_of(m: Mechanism, watched: Watched, output: str, axis: complex, round_abo
         return straight
     centre = m.fixed[hinge]
     radius, swept = float(abs(path[0] - centre)), np.unwrap(np.angle(path - centre))
-    if round(float(swept[-1] - swept[0]) / TURN):
+    if round(float(swept[-1] - swept[0]) / tau):
         if round_about:
             return straight
         raise CannotBuild(tell("point {output} turns all the way round {centre}: it has no dead positions").format(
             output=output, centre=hinge), tell(BY_ANGLE))
     ahead = float((complex(path[np.argmax(swept)] - path[np.argmin(swept)]) * np.conj(axis)).real)
-    if not abs(ahead) > SAME_PLACE * m.crank.length:
+    if not abs(ahead) > NOISE * m.crank.length:
         raise CannotBuild(tell("point {output} has no working stroke: it does not move that way").format(output=output),
                           tell("give another working_sense"))
     way, middle = float(np.sign(ahead)), (swept.max() + swept.min()) / 2
@@ -90,7 +89,7 @@ def _hinge_of(m: Mechanism, path: Any) -> str | None:
     hinges = {pair.name for pair in m.pairs if pair.motion == "rotation" and m.frame in pair.links}
     for name in sorted(hinges & set(m.fixed)):
         apart = np.abs(path - m.fixed[name])
-        if apart.min() > 0 and np.ptp(apart) < SAME_PLACE * m.crank.length:
+        if apart.min() > 0 and np.ptp(apart) < NOISE * m.crank.length:
             return name
     return None
 

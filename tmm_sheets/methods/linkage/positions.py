@@ -23,6 +23,7 @@ from tmm_sheets.mechanism.groups.dead_centres import near_point
 from tmm_sheets.mechanism.groups.three_legs import Course, course
 from tmm_sheets.mechanism.groups.triad import TRIAD, TriadGroup
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
+from tmm_sheets.numbers import NOISE
 from tmm_sheets.words import tr
 
 
@@ -221,10 +222,6 @@ ZONE = 0.09
 """Share of that within which the polynomial is taken: farther out the lines cross well enough."""
 BLIND = 1e-4
 """Angle, rad, next to a change point in which nothing is told of a group where no polynomial is."""
-AGREES = 1e-9
-"""Share of a function within which the polynomial has to meet it."""
-TOGETHER = 1e-9
-"""Angle within which change points of several groups are one, rad."""
 CLOSE = 1e-3
 """Share of a gap's greatest value below which its least value may be a change point."""
 
@@ -287,7 +284,7 @@ def beside(told: Callable[[Floats], dict[str, Any]], needed: str) -> Beside | No
         found, test = Beside(reach * NODES, told(reach * NODES)), reach * np.array([-0.6, -0.25, 0.25, 0.6])
         true = told(test)
         holding = {name: values for name, values in found.values.items()
-                   if np.max(np.abs(found.at(name, test) - true[name])) <= AGREES * (1.0 + np.max(np.abs(values)))}
+                   if np.max(np.abs(found.at(name, test) - true[name])) <= NOISE * (1.0 + np.max(np.abs(values)))}
         if needed in holding:
             return Beside(found.x, holding)
         reach /= 4
@@ -328,7 +325,7 @@ class Passages:
         Between two that differ by the rounding of the search each group would be on another side of what both pass at once.
         """
         before = [a for x in self.m.groups[: self.m.groups.index(g)] for a in self.angles(x)]
-        return tuple(next((a for a in before if abs(np.angle(np.exp(1j * (a - x)))) < TOGETHER), x) for x in found)
+        return tuple(next((a for a in before if abs(np.angle(np.exp(1j * (a - x)))) < NOISE), x) for x in found)
 
     def _searched(self, g: StructuralGroup) -> tuple[float, ...]:
         """Angles at which a gap of a group that hangs on others touches zero."""
@@ -356,18 +353,18 @@ class Passages:
         """Crank angles at which some group has a change point, rad, each once."""
         found: list[float] = []
         for angle in (a for g in self.m.groups for a in self.angles(g)):
-            if all(abs(np.angle(np.exp(1j * (a - angle)))) >= TOGETHER for a in found):
+            if all(abs(np.angle(np.exp(1j * (a - angle)))) >= NOISE for a in found):
                 found.append(angle)
         return tuple(found)
 
     def within(self, phi: Reals) -> npt.NDArray[np.bool_]:
         """True at the crank angles, rad, shape (n,), at which some group is in a change point."""
         phi, angles = np.asarray(phi, dtype=float), np.array(self.every())
-        return np.asarray((np.abs(np.angle(np.exp(1j * (phi[:, None] - angles)))) < TOGETHER).any(axis=1))
+        return np.asarray((np.abs(np.angle(np.exp(1j * (phi[:, None] - angles)))) < NOISE).any(axis=1))
 
     def together(self, angle: float) -> tuple[StructuralGroup, ...]:
         """Groups that have a change point at a crank angle, rad."""
-        return tuple(g for g in self.m.groups if any(abs(np.angle(np.exp(1j * (a - angle)))) < TOGETHER for a in self.angles(g)))
+        return tuple(g for g in self.m.groups if any(abs(np.angle(np.exp(1j * (a - angle)))) < NOISE for a in self.angles(g)))
 
     def turning_back(self, point: str) -> bool:
         """True where a point hangs on a group that keeps its side in a change point: its links turn back at once there."""

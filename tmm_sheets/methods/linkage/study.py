@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from math import tau
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,12 +20,13 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups.contexts import Load
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.integration import weighted
-from tmm_sheets.methods.linkage.cycle import TURN, Cycle, named_angles
+from tmm_sheets.methods.linkage.cycle import Cycle, named_angles
 from tmm_sheets.methods.linkage.forces import GearForce, InputForce, Kinetostatics, external_loads, kinetostatics, limits_of_forces
 from tmm_sheets.methods.linkage.loads import Applied
 from tmm_sheets.methods.linkage.motion import Accelerations, Sliding, Velocities, acceleration_plan, velocity_plan
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.zhukovsky import Lever, lever
+from tmm_sheets.numbers import NOISE
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
@@ -118,7 +120,6 @@ class Study:
         if isinstance(self.driver, InputForce):
             by_lever = self.lever
             assert by_lever.force is not None
-            assert by_lever.balancing is not None
             assert by_lever.line is not None
             loads = self.driver.loaded(self.positions, loads, by_lever.plan, by_lever.force)
             found = kinetostatics(self.positions, self.accelerations, loads, couples, self.driver)
@@ -142,8 +143,7 @@ class Study:
         friction, crank = self.forces.friction if self.friction is not None else None, self.mechanism.crank.link
         if friction is not None and friction.powers:
             couples = {**couples, crank: [*couples.get(crank, ()), friction.on_crank]}
-        every = [load for of_link in loads.values() for load in of_link]
-        return lever(self.velocities, every, couples, self.driver)
+        return lever(self.velocities, [load for of_link in loads.values() for load in of_link], couples, self.driver)
 
     @cached_property
     def balance(self) -> Plan:
@@ -196,8 +196,6 @@ BALANCE: StepTable = {
 
 SAMPLES = 15
 """Points of a curve between two positions."""
-STRAIGHT = 1e-9
-"""Part of its way by which a point may leave a straight line."""
 
 INCLINATION = Rule("inclination of a rod", lambda u, along: np.arctan((u * np.conj(along)).imag / (u * np.conj(along)).real),
                    ("direction", "direction"), "angle",
@@ -219,7 +217,7 @@ OF_POINT: StepTable = {
 OF_LINK: StepTable = {
     "ψ_#": ("moved start turns", "ψ_{#}", Rule(
         "angle turned from the beginning",
-        lambda u, start, turns: np.arctan2(u.imag, u.real) + TURN * turns - np.arctan2(start.imag, start.real),
+        lambda u, start, turns: np.arctan2(u.imag, u.real) + tau * turns - np.arctan2(start.imag, start.real),
         ("direction", "direction", "number"), "angle", marked("Angle turned by the link {name} = {value}."))),
     "ω_#": ("omega", "ω_{#}", Rule("angular velocity of a link", lambda w: w, ("number",), "number",
         marked("{name} = {value} s⁻¹."), unit="rad/s")),
@@ -309,7 +307,7 @@ class Motion:
             at = self.study.turned
             here = np.angle(np.broadcast_to(self.study.positions.directions[name].value, at.shape))
             turns = (np.interp(at, self.turned, swept) - here, swept - angle)
-            self._links[name] = Output(*(_turning(plan, study, name, np.round(k / TURN))
+            self._links[name] = Output(*(_turning(plan, study, name, np.round(k / tau))
                                          for (plan, study), k in zip(self._both(), turns, strict=True)))
         return self._links[name]
 
@@ -342,7 +340,7 @@ def _path(name: str, way: Reals) -> complex:
     far = complex(way[np.argmax(np.abs(way))])
     size = abs(far)
     u = far / size if size else 1 + 0j
-    if np.max(np.abs((way * np.conj(u)).imag)) > STRAIGHT * size:
+    if np.max(np.abs((way * np.conj(u)).imag)) > NOISE * size:
         raise CannotBuild(tell("point {name} does not move along a straight line: it has no diagram S(φ)").format(name=name),
                           tell("name a point of a slider on a fixed guide in cycle.diagrams, or the number of a link for its "
                                "angle"))

@@ -55,8 +55,8 @@ class Lever:
     velocities: Velocities
     points: dict[str, Step] = field(default_factory=dict)
     hung: list[LeverForce] = field(default_factory=list)
-    balancing: Step | None = None
-    contact: Step | None = None
+    balancing: Step = field(init=False)
+    contact: Step = field(init=False)
     line: Step | None = None
     force: Step | None = None
 
@@ -70,8 +70,7 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
           driver: GearForce | InputForce | None) -> Lever:
     """Record the lever from the velocity plan, the external and inertia forces, N, and the couples of each link, N m."""
     pos = vel.positions
-    m = pos.mechanism
-    c = m.crank
+    c = pos.mechanism.crank
     plan = Plan("lever", tr("Zhukovsky lever"), "m/s", pos.plan.labels, search=pos.plan.search)
     pole = plan.add("p", POLE, 0j)
     result = Lever(plan, vel)
@@ -124,25 +123,23 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
 
         drive = driver.drive
         contact = turned(vel.points[drive.far] if drive.slides else vel.plan[RELATIVE])
-        result.line = plan.add("u", ALONG_MOTION, pos.directions[drive.link], drive.sense)
-        return _driven(result, driver.name, contact, terms)
+        line = plan.add("u", ALONG_MOTION, pos.directions[drive.link], drive.sense)
+        return _driven(result, driver.name, line, contact, terms)
     at = contact_point(pos, driver)
     known = {*vel.plan.steps, *plan.steps}
     letter = next((letter for letter in CONTACT if not {letter, f"{letter}′"} & known), plan.free("f"))
     f_step = plan.add(letter, SIMILAR, vel.pole, vel.points[c.pin], pos.points[c.pivot], pos.points[c.pin], at)
     contact = plan.add(f"{letter}′", TURNED, f_step)
-    result.line = driver.line(c.sense)
-    return _driven(result, driver.name, contact, terms)
+    return _driven(result, driver.name, driver.line(c.sense), contact, terms)
 
 
-def _driven(result: Lever, name: str, contact: Step, terms: list[Step]) -> Lever:
+def _driven(result: Lever, name: str, line: Step, contact: Step, terms: list[Step]) -> Lever:
     """The lever with a balancing force along its line at a point."""
     plan, pole = result.plan, result.plan["p"]
-    assert result.line is not None
-    result.balancing = plan.add(plan.named(name), BALANCE, pole, contact, result.line, *terms)
-    result.force = force = plan.add(plan.named(f"{name} на рычаге"), VECTOR_OF, result.balancing, result.line,
+    result.line, result.contact = line, contact
+    result.balancing = plan.add(plan.named(name), BALANCE, pole, contact, line, *terms)
+    result.force = force = plan.add(plan.named(f"{name} на рычаге"), VECTOR_OF, result.balancing, line,
                                     symbol=tr("{force} on the lever").format(force=name))
-    result.contact = contact
     arm = plan.add(plan.named(f"h {name}"), rules.ARM, pole, contact, force)
     result.hung.append(LeverForce(symbol(name), contact, force, arm))
     return result

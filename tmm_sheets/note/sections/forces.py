@@ -45,7 +45,7 @@ def forces_fields(r: Reader) -> dict[str, Any]:
         "crank_part": _crank(r),
         **_lever(r),
         "reactions": _reactions(r),
-        "sign_of_moment": study.forces.balancing is not None and study.lever.line is None,
+        "sign_of_moment": study.lever.line is None,
         **_compare(r),
         "sheet": sheet,
         "also": r.pictures.others(("kinetics.", "friction."), sheet),
@@ -316,8 +316,6 @@ def _crank(r: Reader) -> list[dict[str, Any]]:
     """The initial link: balancing force or moment from the moments, then its force plan."""
     study, name = r.project.study, r.project.balancing
     balancing, m = study.forces.balancing, study.mechanism
-    if balancing is None:
-        return []
     item: dict[str, Any] = {"pivot": lettered(m.crank.pivot)}
     if m.drive is None:  # the force of an input is a load of the plans
         on_wheel = study.driver is not None and study.driver.wheel is not None
@@ -335,7 +333,7 @@ def _lever(r: Reader) -> dict[str, Any]:
     """Zhukovsky's lever: arms in mm, the balancing force or moment."""
     study, scale = r.project.study, r.scales.get("lever")
     lever = study.lever
-    if lever.balancing is None or scale is None:
+    if scale is None:
         return {}
     own = lever.hung[-1]
     last = float(value_at(own.arm, r.k))
@@ -378,8 +376,6 @@ def _lever(r: Reader) -> dict[str, Any]:
 def _compare(r: Reader) -> dict[str, Any]:
     """The balancing force or moment by both methods, with the difference, and whether a drawing would show it."""
     study, said = r.project.study, r.words["forces"]
-    if study.forces.balancing is None or study.lever.balancing is None:
-        return {}
     by_forces, unit = (study.balance["along"], "N") if study.lever.line is not None else (study.forces.balancing, "N*m")
     delta = study.balance["Δ"]
     off = float(r.value(delta))
@@ -405,7 +401,7 @@ def _reactions(r: Reader) -> Rows:
         if pair not in seen and np.ndim(step.value):
             seen.add(pair)
             columns.append(Column(r.head(letters_of(name), "N"), np.abs(step.value), r.id(step), sizes))
-    if columns and forces.balancing is not None:
+    if columns:
         key, unit, kind = ("along", "N", sizes) if study.lever.line is not None else ("M", "N*m", moments)
         shown = study.balance[key]
         columns.append(Column(r.head(letters_of(r.project.balancing), unit), np.real(shown.value), r.id(shown), kind))

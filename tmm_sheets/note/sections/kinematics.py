@@ -42,7 +42,7 @@ def kinematics_fields(r: Reader) -> dict[str, Any]:
         "acceleration_steps": r.sentences(a.plan, _is_plain),
         "dead": cycle.plan is not None,
         "dead_steps": r.sentences(cycle.plan, _is_plain) if cycle.plan is not None else None,
-        "numbering_steps": r.sentences(cycle.numbering) if cycle.numbering is not None else None,
+        "numbering_steps": r.sentences(cycle.numbering),
         "own_scale": "positions" in r.project.variant.scales,
         "slides": any(p.motion == "translation" and m.frame not in p.links for p in m.pairs),
         "turning_back": [{"group": name, "angles": ", ".join(map(number, angles))}

@@ -99,8 +99,7 @@ def _places(r: Reader) -> Iterator[Row | None]:
         for axis, v in zip("xy", through if isinstance(through, list) else (), strict=False):
             yield _row(r, f"guide[{i}].through", v, "", said[f"guide_{axis}"].format(name=name), zero=True)
         if "direction" in guide and "link" not in guide:
-            angle = said["guide_angle"].format(name=name)
-            yield _row(r, f"guide[{i}].direction", guide["direction"], "", angle, zero=True)
+            yield _row(r, f"guide[{i}].direction", guide["direction"], "", said["guide_angle"].format(name=name), zero=True)
 
 
 def _row(r: Reader, path: str, value: Any, symbol: str, meaning: str, zero: bool = False) -> Row | None:
@@ -141,8 +140,7 @@ def _values(r: Reader, path: list[str], taken: Collection[str]) -> Iterator[tupl
     if found or ".".join(path) not in taken:
         yield from found
         return
-    table = getattr(r.project.variant, path[0], None)
-    value = getattr(table, path[-1], None)
+    value = getattr(getattr(r.project.variant, path[0], None), path[-1], None)
     if isinstance(value, int | float) and not isinstance(value, bool):
         yield ".".join(path), value, "", {}
 
@@ -201,10 +199,8 @@ def _diagrams(r: Reader, over: str) -> Rows:
         return ()
     rows: list[Row] = [((said[f"over_{over}"],), *(_head(r, c) for c in columns))]
     for x in sorted({units.si(argument) for c in columns for argument, _ in c.points}):
-        cells: list[Text] = [(_exact(r, degrees(x) if over == "angle" else x),)]
-        for c in columns:
-            cells.append(enumerated(((_exact(r, v),) for v in c.at(x)), " / ") or ("–",))
-        rows.append(tuple(cells))
+        rows.append(((_exact(r, degrees(x) if over == "angle" else x),),
+                     *(enumerated(((_exact(r, v),) for v in c.at(x)), " / ") or ("–",) for c in columns)))
     return tuple(rows)
 
 

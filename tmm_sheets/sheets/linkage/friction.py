@@ -297,7 +297,6 @@ def _in_positions(project: Project, options: dict[str, Any]) -> tuple[str, liste
     """Sizes of the reactions with friction in all positions, what drives the crank, and the power of friction."""
     of, study = _friction(project), project.study
     n, forces = len(study.labels), study.forces
-    assert forces.balancing is not None
     sign, unit = balancing_sign(project), tr("N·m") if study.driver is None else tr("N")
     # A moment has the sign that it has in its graph; of a force in the mesh the size is told.
     drive = study.balance["M"].value if study.driver is None else np.abs(forces.balancing.value)

@@ -478,7 +478,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     s.dot("p", 0.9)
     s.letters("p", "p", gap=1.2)
     _turned_letters(s, turned, lv.points, vectors)
-    if lv.contact is not None and project.driver is not None and lv.contact not in lv.points.values():
+    if project.driver is not None and lv.contact not in lv.points.values():
         play(s, [lv.contact], "axis")
         s.letters(lv.contact, lv.contact.name, gap=1.2)
     draw_arms(s, 0j, shown, points=[complex(s.at(step)) for step in lv.points.values()])
@@ -507,8 +507,6 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     """The balancing force by both methods and their difference; moments are positive in the sense of rotation."""
     k, study = project.force_index, project.study
     forces: Kinetostatics = study.forces
-    assert forces.balancing is not None
-    assert study.lever.balancing is not None
     force, sign = project.driver is not None, balancing_sign(project)
     kind = forces.force_size(k) if force else forces.moment_size(k)
     # A force is signed along the line that drives the crank.

@@ -170,7 +170,7 @@ def group_equations(project: Project, g: StructuralGroup, guides: bool = False) 
 def crank_equation(project: Project) -> Iterator[str]:
     """The equation of the balancing moment, or of the force of a gear."""
     k, forces, crank, name = project.force_index, project.study.forces, project.mechanism.crank, balancing_sign(project)
-    if forces.balancing is None or (project.driver is not None and project.driver.wheel is None):
+    if project.driver is not None and project.driver.wheel is None:
         return
     total, *acting = forces.balancing.args
     if project.driver is not None:
