@@ -40,13 +40,33 @@ gc.set_threshold(50_000, 20, 20)
 
 
 LONGEST = (
-    "compare/test_cad", "test_cli", "test_docs", "living/test_page", "test_counts", "sheets/test_kept_sheets", "compare/test_image",
-    "output/test_batch", "test_api", "compare/test_plan_judge", "compare/test_languages", "stress/test_stress",
-    "compare/test_measured", "test_quoted", "bench/test_bench", "sheets/test_plan_scales", "note/test_content",
-    "record/test_record", "sheets/test_user_projects", "note/test_notes", "test_words", "task/families/test_transport",
-    "note/test_files",
+    "test_docs", "note/test_content", "compare/test_image", "living/test_page", "test_cli", "compare/test_cad", "test_attack",
+    "sheets/test_kept_sheets", "output/test_batch", "test_api", "stress/test_stress", "test_counts", "bench/test_bench",
+    "compare/test_plan_judge", "compare/test_languages", "test_words", "sheets/test_plan_scales", "task/families/test_transport",
+    "record/test_record", "sheets/test_user_projects", "test_doors", "test_quoted", "compare/test_measured", "test_missing_parts",
+    "sheets/test_legibility", "compare/test_line_styles", "note/test_notes", "test_import_rules", "test_encodings",
 )
-"""Files that take longest, the longest first (processor, 2026-11-29): begun last they would leave one worker alone."""
+"""Files that take longest, the longest first (processor, 2026-11-30): begun last they would leave one worker alone."""
+
+
+TOGETHER = {"compare/test_doubtful_fits": "compare/test_image", "living/test_lesson": "living/test_page",
+            "note/test_files": "note/test_content", "note/test_pages": "note/test_content"}
+"""Files that read what another one makes once a process: a photograph laid over its sheet, pages, a note; one worker runs both."""
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """File by file as ``--dist loadfile`` does, but for those."""
+    if config.getvalue("dist") != "loadfile":
+        return None
+    from xdist.scheduler import LoadFileScheduling
+
+    class Scheduling(LoadFileScheduling):
+        def _split_scope(self, nodeid):
+            name = super()._split_scope(nodeid).removeprefix("tests/").removesuffix(".py")
+            return TOGETHER.get(name, name)
+
+    return Scheduling(config, log)
 
 
 def pytest_collection_modifyitems(items):

@@ -16,6 +16,7 @@ from tests.project_files import EVEN, SLIDER, from_file, write
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.output.build_store import RECORD
+from tmm_sheets.sheets import composing
 from tmm_sheets.version import __version__
 
 SHAPER = from_file("lugansk/shaper")
@@ -188,7 +189,7 @@ def test_what_cannot_be_built_costs_nothing_else(changes, said, refused, tmp_pat
     assert not Path("none").exists()
 
 
-def test_sheets_in_part_are_remembered_rightly(tmp_path, capsys):
+def test_sheets_in_part_are_remembered_rightly(tmp_path, capsys, composed):
     """Built again, the sound sheets are unchanged and the other is still told; mended, only what depends on the change is new."""
     bad, out = {"cam.roller": "9 mm"}, tmp_path / "out"
     words = ["build", write(tmp_path, SHAPER, bad), "-o", str(out), "--format", "svg"]
@@ -202,7 +203,9 @@ def test_sheets_in_part_are_remembered_rightly(tmp_path, capsys):
     assert first.err in again.err
     assert {p.name: p.stat().st_mtime_ns for p in out.iterdir()} == times
     write(tmp_path, SHAPER)
+    composed.clear()
     assert run(words) == 0
+    assert {*composed} <= {4}
     assert {p.name for p in out.glob("*.svg")} == {f"sheet{n}.svg" for n in (1, 2, 3, 4)}
     # The file of a sheet that cannot be drawn any more is not passed off as new.
     capsys.readouterr()
@@ -213,6 +216,15 @@ def test_sheets_in_part_are_remembered_rightly(tmp_path, capsys):
     assert "sheet4.svg: left as they were made before" in told.err
     assert "sheet4" not in told.out
     assert (out / "sheet4.svg").read_bytes() == good
+
+
+@pytest.fixture
+def composed():
+    """Numbers of the sheets that are composed, not read: a list that grows."""
+    found, whole = [], composing.composed
+    with pytest.MonkeyPatch.context() as patch:  # a plain one: what is noted changes no sheet, kept ones serve
+        patch.setattr(composing, "composed", lambda project, n: found.append(n) or whole(project, n))
+        yield found
 
 
 def pages(path):
@@ -315,7 +327,7 @@ def test_scale_factors_of_the_project_file(tmp_path, capsys):
     file = write(tmp_path, SHAPER, {"scales": {"positions": 0.005}})
     assert run(["protocol", file, "--plan", "positions"]) == 0
     assert "μ_l = 0,005 м/мм" in capsys.readouterr().out
-    file = write(tmp_path, SHAPER, {"scales": {"position": 0.005}})
+    file = write(tmp_path, from_file("lugansk/cam_flat"), {"scales": {"position": 0.005}})
     assert run(["build", file, "-o", str(tmp_path / "out")]) == 2
     assert "scales.position: no sheet draws a plan of this name" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

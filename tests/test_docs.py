@@ -269,7 +269,8 @@ NOT_RUN = {
 """Commands of docs/ that the next test leaves out, by what they have in them, and why."""
 LONG = ("note", "--lang uk", "page my.toml --sheet", "--list", "roster", "optimise", "family check", "tests/projects", "--dxf",
         "lugansk/shaper press my.toml", "bench", "stress", "--image", "build --all", "--group works", "--report mine.html",
-        "--json record.json", "record lugansk/shaper --sheet", "--marks", "--window", "--preview", "--supervisor", "--paper A3")
+        "--json record.json", "record lugansk/shaper --sheet", "sixbar/3:2 --sheet",
+        "--marks", "--window", "--preview", "--supervisor", "--paper A3")
 """Commands of docs/ that are run in a trial only, by what they have in them."""
 SHORTER = {"stress": ("--cases", "3"), "--summary": ("--quick",), "build --all": ("--sheet", "2", "--format", "svg"),
            "--supervisor": ("--sheet", "1"), "defence": ("--sheet", "4"), **dict.fromkeys(
@@ -446,7 +447,7 @@ PLANTS = {
     "the guides {} and {} are parallel there": ('["190 mm", "140 mm"]', '["90 mm", "140 mm"]'),
     "needs {} as well": ('working_sense = "+y"\n', ""),
     "the view does not fit in its place, it needs": ("[cycle]", "[scales]\npositions = 0.0001\n\n[cycle]"),
-    "no sheet draws a plan of this name": ("[cycle]", "[scales]\nposition = 0.01\n\n[cycle]"),
+    "no sheet draws a plan of this name": ('"kinematics_forces", "flywheel"]\n', '"flywheel"]\n\n[scales]\nposition = 0.01\n'),
     "unknown sheet, not in templates/sheets": ('"flywheel"]', '"flywheels"]'),
     "not valid TOML": ('"F5"', '"F5'),
 }

@@ -227,6 +227,12 @@ def test_circles_are_found():
     assert circles({"a": {"b"}, "b": {"c"}, "c": {"b"}, "d": {"a"}}) == [["b", "c"]]
 
 
+@cache
+def functions(tree):
+    """Each function of a syntax tree with all nodes in it."""
+    return [(function, [*ast.walk(function)]) for function in ast.walk(tree) if isinstance(function, ast.FunctionDef)]
+
+
 CHANGES = {"append", "extend", "insert", "pop", "remove", "clear", "update", "setdefault", "add", "discard", "popitem", "sort"}
 
 
@@ -234,8 +240,7 @@ def changed_globals(tree):
     """Names of the module's own variables that its functions change in place or rebind."""
     names = {t.id for node in tree.body if isinstance(node, ast.Assign | ast.AnnAssign) for t in ast.walk(node)
              if isinstance(t, ast.Name) and isinstance(t.ctx, ast.Store)}  # fmt: skip
-    for function in (n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef)):
-        nodes = [*ast.walk(function)]
+    for _, nodes in functions(tree):
         local = {a.arg for a in nodes if isinstance(a, ast.arg)}
         local |= {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
         for node in nodes:
@@ -268,8 +273,8 @@ def mixed_up(tree):
 
     Python 3.12.1 makes a function's variable of such a name, and the call ends in an UnboundLocalError.
     """
-    for function in (n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef)):
-        inlined = [n for n in ast.walk(function) if isinstance(n, INLINED)]
+    for function, nodes in functions(tree):
+        inlined = [n for n in nodes if isinstance(n, INLINED)]
         own = [{n.id for part in c.generators for n in ast.walk(part.target) if isinstance(n, ast.Name)} for c in inlined]
         for comprehension, names in zip(inlined, own, strict=True):
             called = {n.func.id for n in ast.walk(comprehension) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)}

@@ -31,7 +31,8 @@ def text(variant: Variant, names: Names) -> str:
              tell("sheets: {sheets}").format(sheets=", ".join(f"{i} {name}" for i, name in enumerate(variant.sheets, 1)))]
     if not (paper := names.paper(variant)).usual:
         lines.append(tell("paper: {format}, {orientation}").format(format=paper.format, orientation=paper.orientation))
-    entered = [(name, of_file(told.text, tell), told.where if told.text else "") for name, told in names.entries(variant).items()]
+    entered = [(name, of_file(told.text, tell), told.text and (told.where or title_entries.place(variant, name)))
+               for name, told in names.entries(variant).items()]
     goes_first = (tell("an option of build, note and plot goes first, then {beside}, {user}, {file}") if variant.shipped else
                   tell("an option of build, note and plot goes first, then {file}, {beside}, {user}"))
     lines += ["", tell("Title block"), *_table(entered), "  " + goes_first.format(

@@ -187,7 +187,7 @@ def test_wrong_usage(arguments, status, said, capsys):
 
 def test_size():
     """A record stays small enough to be read at once."""
-    found, _ = recording.record(Project(catalogue.read("sixbar/1:1")))
+    found, _ = recording.record(Project(catalogue.read("sixbar/8:3")))
     assert len(recording.as_json(found).encode()) < 10e6
 
 

@@ -87,7 +87,7 @@ def test_remarks_are_kept_as_they_are():
 
 def test_the_second_time_nothing_is_composed(place, tmp_path, monkeypatch, capsys):
     """Another format, a plot, a comparison of a drawing: all read what the first build has kept."""
-    name = "lugansk/cam_rocker"
+    name = "lugansk/cam_flat"
     assert run(["build", name, "--format", "dxf", "-o", str(tmp_path / "a")]) == 0
     monkeypatch.setattr(composing, "composed", lambda *_: pytest.fail("composed a sheet that is kept"))
     assert run(["build", name, "--format", "svg,pdf", "-o", str(tmp_path / "a")]) == 0
@@ -200,9 +200,9 @@ def test_what_was_not_asked_for_changes_no_sheet(place, monkeypatch, n, pairs, s
 
 def test_loading_imports_nothing_that_draws(place, tmp_path):
     """Neither views nor methods nor the libraries of geometry."""
-    run(["build", "lugansk/cam_rocker", "--format", "svg", "-o", str(tmp_path)])
+    run(["build", "lugansk/cam_flat", "--format", "svg", "-o", str(tmp_path)])
     code = ("import sys\nfrom tmm_sheets.__main__ import run\n"
-            f"assert run(['build', 'lugansk/cam_rocker', '--format', 'svg', '--force', '-o', {str(tmp_path)!r}]) == 0\n"
+            f"assert run(['build', 'lugansk/cam_flat', '--format', 'svg', '--force', '-o', {str(tmp_path)!r}]) == 0\n"
             "print(*(m for m in sys.modules if m.startswith(('tmm_sheets.', 'shapely', 'scipy'))), file=sys.stderr)")  # fmt: skip
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=Path(__file__).parents[2])
     modules = told.stderr.splitlines()[-1].split()

@@ -13,6 +13,7 @@ from tmm_sheets.__main__ import run
 from tmm_sheets.drawing.marks import Arc, Text, flat
 from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.project import Project
+from tmm_sheets.sheets import composing
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant
 from tmm_sheets.task.title_entries import Names
@@ -23,6 +24,8 @@ FILES = [path for path in sorted((Path(__file__).parents[1] / "projects").glob("
 
 EVERY_KIND = [path for path in FILES if path.stem in ("feeder", "planer", "sieve")]
 """Projects with groups of all six kinds, and guides on moving links."""
+FEEDER = next(path for path in FILES if path.stem == "feeder")
+"""Drawn by other tests as well: its sheets are composed once for all."""
 NAME = attrgetter("stem")
 
 
@@ -53,7 +56,7 @@ def test_lever_agrees_with_kinetostatics_at_every_position(project):
     np.testing.assert_allclose(kinetic, lever.balancing.value, atol=1e-9 * np.abs(lever.balancing.value).max())
 
 
-@pytest.mark.parametrize("project", few(FILES, next(path for path in FILES if path.stem == "planer")), indirect=True, ids=NAME)
+@pytest.mark.parametrize("project", few(FILES, FEEDER), indirect=True, ids=NAME)
 @pytest.mark.parametrize("sheet", [1, 2])
 def test_sheets_are_clean(project, sheet):
     done = composed(project, sheet)
@@ -71,7 +74,7 @@ def test_sheets_are_clean(project, sheet):
             assert not ((p.real > 651) & (p.imag < 60)).any(), "in the title block"
 
 
-@pytest.mark.parametrize("project", few(FILES, next(path for path in FILES if path.stem == "feeder")), indirect=True, ids=NAME)
+@pytest.mark.parametrize("project", few(FILES, FEEDER), indirect=True, ids=NAME)
 def test_other_positions_can_be_the_analysed_one(project):
     for label in project.cycle.labels[1::8]:
         cycle = project.variant.cycle.model_copy(update={"force_position": label})
@@ -112,4 +115,4 @@ def test_no_two_sheets_of_a_project_have_one_designation(sheets, codes):
     block = given.title_block.model_copy(update={"designation": "ТММ.01"})
     asked = given.project.model_copy(update={"sheets": sheets})
     project = Project(given.model_copy(update={"project": asked, "title_block": block}))
-    assert [composed(project, n).drawing.subject for n in (1, 2, 3)] == [f"ТММ.01 {code}" for code in codes]
+    assert [composing.entries(project, n)["designation"] for n in (1, 2, 3)] == [f"ТММ.01 {code}" for code in codes]

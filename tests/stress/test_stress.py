@@ -269,7 +269,7 @@ def test_command(capsys, monkeypatch):
 def test_command_tells_what_is_exceeded(capsys, monkeypatch):
     monkeypatch.setattr(motion, "CORIOLIS", mutated(motion.CORIOLIS, lambda a, w, v, u: a + 1j * w * (u - v)))
     monkeypatch.setattr(cases, "memory", lambda: 1.0)
-    assert run(["stress", "--cases", "36"]) == 1
+    assert run(["stress", "--cases", "12"]) == 1
     out, err = capsys.readouterr()
     assert "EXCEEDED" in out
     assert err.startswith("bound exceeded: ")

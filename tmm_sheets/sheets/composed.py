@@ -136,7 +136,7 @@ def loaded(data: bytes, kind: type[T]) -> T | None:
 
 
 WAYS = 8
-"""Sets of questions that are remembered of a thing: mechanisms with and without loads, parts made in another order."""
+"""Sets of questions that are remembered of a project's thing: with and without loads, parts made in another order."""
 
 Questions = tuple[tuple[str | int, ...], ...]
 """What a project file was asked: ``Variant.asked``."""
@@ -151,8 +151,8 @@ class Answered:
 
     def __init__(self, project: Project, n: int, kind: str) -> None:
         self.variant = project.variant
-        self._about = fingerprint(kind, maker(), words.paper(), words.reader(), project.sheets[n - 1], str(n)) \
-            if kept.folder() is not None and self.variant.content else ""
+        self._about = fingerprint(kind, maker(), words.paper(), words.reader(), project.sheets[n - 1], str(n),
+                                  self.variant.project.name) if kept.folder() is not None and self.variant.content else ""
         before = kept.read(self._about) if self._about else None
         self._known: list[Questions] = kept.taken(before, lambda tree: [tuple(map(tuple, questions)) for questions in tree]) or []
 

@@ -37,7 +37,7 @@ NOBODY, BLANK = "Кафедра ТММ", "___"
 
 @dataclass(frozen=True)
 class TitleEntry:
-    """A text of the title block, or of the paper, and where it was told."""
+    """A text of the title block, or of the paper, and where it was told; nowhere is the project file, see :func:`place`."""
 
     text: str
     where: str = ""
@@ -61,7 +61,7 @@ class Names:
         block, beside = variant.title_block, _beside(variant)
         found = {}
         for name in FIELDS:
-            written = TitleEntry(getattr(block, name), _place(variant, name))
+            written = TitleEntry(getattr(block, name))
             option = TitleEntry(self.options[name], f"--{name}") if name in self.options else None
             own = None if variant.shipped or is_blank(written.text) else written
             ways = (option, own, beside.get(name), self.user.get(name), written)
@@ -102,7 +102,8 @@ def is_blank(text: str) -> bool:
     return not text.strip() or BLANK in text or text == NOBODY
 
 
-def _place(variant: Variant, name: str) -> str:
+def place(variant: Variant, name: str) -> str:
+    """Where the project file says what stands in a field: who asks has asked for its lines, which every change of it moves."""
     if name not in variant.title_block.model_fields_set:
         return ""
     problem = variant.problem("", "title_block", name)

@@ -184,7 +184,7 @@ def test_couple_of_a_guide_without_a_force_is_shown():
     assert "F̅_{50}" not in labels
 
 
-@pytest.mark.parametrize("name", few((f"sixbar/{task}:{1 + task % 5}" for task in range(1, 11)), "sixbar/4:5"))
+@pytest.mark.parametrize("name", few((*(f"sixbar/{task}:{1 + task % 5}" for task in range(1, 11)), "sixbar/8:3"), "sixbar/8:3"))
 def test_both_sheets_have_room(name):
     project = Project(read(name))
     for n in (1, 2):

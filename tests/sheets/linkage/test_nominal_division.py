@@ -4,7 +4,7 @@ from math import acos, degrees
 
 import pytest
 
-from tests.project_files import NOMINAL, from_file, project
+from tests.project_files import NOMINAL, from_file, known, project
 from tmm_sheets.sheets.sheet import composed
 
 
@@ -12,9 +12,9 @@ def words(drawing):
     return " ".join(mark.text for mark in drawing.marks if hasattr(mark, "text"))
 
 
-@pytest.mark.parametrize("division", [{}, NOMINAL], ids=["exact", "nominal"])
-def test_it_is_told_once(division):
-    text = words(composed(project(from_file("lugansk/shaper"), division), 1).drawing)
-    assert text.count("отстоят") == bool(division)
+@pytest.mark.parametrize("nominal", [False, True], ids=["exact", "nominal"])
+def test_it_is_told_once(nominal):
+    text = words(composed(project(from_file("lugansk/shaper"), NOMINAL) if nominal else known("lugansk/shaper"), 1).drawing)
+    assert text.count("отстоят") == nominal
     beside = (216 - (360 - 2 * degrees(acos(0.08 / 0.26)))) / 2
-    assert (f"на {beside:.2f}°".replace(".", ",") in text) is bool(division)
+    assert (f"на {beside:.2f}°".replace(".", ",") in text) is nominal

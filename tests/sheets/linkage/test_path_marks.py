@@ -5,6 +5,7 @@ import pytest
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.project import Project
+from tmm_sheets.sheets import composing
 from tmm_sheets.sheets.linkage import kinematics
 from tmm_sheets.sheets.sheet import composed
 
@@ -54,5 +55,5 @@ def test_marks_too_close_share_a_number(z, together):
 
 
 def test_few_marks_ask_for_no_view():
-    sheet = composed(Project(read("sixbar/1:1")), 1)
-    assert VIEW not in {part.draw for part in sheet.parts}
+    _, canvas, _ = composing.viewed(Project(read("sixbar/1:1")), 1)
+    assert VIEW not in {part.draw for part in canvas.parts}

@@ -6,6 +6,7 @@ from tests import project_files as files
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.marks import Arc
 from tmm_sheets.project import Project
+from tmm_sheets.sheets import composing
 from tmm_sheets.sheets.linkage import kinematic_frames, link_marks
 from tmm_sheets.sheets.sheet import composed
 
@@ -78,7 +79,7 @@ def test_a_ram_has_a_hinge_where_a_rod_hangs_on_it(tmp_path, rod, hinged):
     path.write_text(YOKE.replace("{rod}", rod), encoding="utf-8")
     project = Project(read(str(path)))
     step = project.study.positions.points["B"]
-    circles = [m for m in composed(project, 1).drawing.marks
+    circles = [m for m in composing.viewed(project, 1)[1].marks
                if isinstance(m, Arc) and m.style == "main" and m.by is not None and m.by.step == step.path]
     assert bool(circles) is hinged
 

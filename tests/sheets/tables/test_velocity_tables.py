@@ -11,14 +11,13 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.project import Project
+from tmm_sheets.sheets import composing
 from tmm_sheets.sheets.linkage import given_position
-from tmm_sheets.sheets.sheet import composed
 
 
 @cache
 def tables(name):
     """A project, titles and columns of the tables of its sheet 1, and its scale factor of velocities."""
-    composed(Project(read(name)), 1)  # kept: then its views are asked for their steps alone
     found, project = [], Project(read(name))
     original = given_position.table_over_positions
 
@@ -28,8 +27,8 @@ def tables(name):
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(given_position, "table_over_positions", keeping)
-        scales = composed(project, 1, steps=True).scales
-    return project, found, scales["velocities"].mu
+        _, canvas, _ = composing.viewed(project, 1)
+    return project, found, canvas.scales["velocities"].mu
 
 
 @pytest.mark.parametrize("name", [seldom("screen"), seldom("loom"), "lugansk/engine", seldom("tests/projects/conveyor.toml")])
