@@ -237,10 +237,13 @@ def sides(a: Any, b: Any) -> Floats:
 
 def find_near(edges: Floats, box: Box, reach: float) -> npt.NDArray[np.intp]:
     """Indices of the bounding boxes, (4, n), within ``reach`` of a rectangle along both axes."""
-    x0, y0, x1, y1 = edges
-    # The method: np.flatnonzero costs five calls more, and this is asked thousands of times.
-    near = (x0 <= box.x1 + reach) & (x1 >= box.x0 - reach) & (y0 <= box.y1 + reach) & (y1 >= box.y0 - reach)
-    found: Numbers = near.nonzero()[0]
+    return are_near(edges, box, reach).nonzero()[0]  # np.flatnonzero costs five calls more, and this is asked thousands of times
+
+
+def are_near(edges: Any, boxes: Any, reach: Any) -> Flags:
+    """Mask: are bounding boxes within ``reach`` of rectangles along both axes? Arguments broadcast."""
+    (e0, f0, e1, f1), (x0, y0, x1, y1) = edges, boxes
+    found: Flags = (e0 <= x1 + reach) & (e1 >= x0 - reach) & (f0 <= y1 + reach) & (f1 >= y0 - reach)
     return found
 
 

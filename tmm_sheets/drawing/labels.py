@@ -104,7 +104,8 @@ class PlacedLabels:
     """Labels where they stand (``at``) on the ``ink`` of a canvas, with their leaders.
 
     Lettering of the canvas (``written``) ends with theirs (``boxes``): x0, y0, x1, y1, mm, not numbers where one is not set.
-    ``views`` are the places of the parts that labels belong to.
+    ``views`` are the places of the parts that labels belong to. What is farther off than where labels were ``looked`` for does not
+    change what is found.
     """
 
     def __init__(self, ink: InkIndex, labels: Sequence[Label], views: Sequence[Box] = ()) -> None:
@@ -115,6 +116,8 @@ class PlacedLabels:
         self.boxes = self.written[len(ink.written):]
         self._led: dict[int, tuple[complex, complex]] = {}
         self._unsure = dict[tuple[Label, complex, complex], int]()
+        self.looked = list[tuple[Label, Box]]()
+        self._in_vain = dict[tuple[int, bool], npt.NDArray[np.float64]]()
         self._update_leaders()
 
     def put(self, k: int, placement: Placement) -> None:
@@ -123,6 +126,7 @@ class PlacedLabels:
         self.at[k:k + 1] = [placement]
         label, box, *_ = placement
         self.boxes[k] = box
+        self.looked.append((label, box))
         before, led = self._led.pop(k, None), leader_to(label, box)
         if led is not None:
             self._led[k] = led
@@ -146,9 +150,8 @@ class PlacedLabels:
     @cached_property
     def _disturbed(self) -> set[int]:
         """Labels that have a leader, or one near them, or are unsure: nothing can be wrong with others that was not before."""
-        x0, y0, x1, y1 = self.boxes.T[:, :, None] + (NEAR + ink_index.ROUNDING) * np.array([-1, -1, 1, 1])[:, None, None]
-        e0, f0, e1, f1 = self._led_sides
-        near = ((e0 <= x1) & (e1 >= x0) & (f0 <= y1) & (f1 >= y0)).any(axis=1)
+        pairs = ink_index.are_near(self._led_sides, self.boxes.T[:, :, None], NEAR + ink_index.ROUNDING)
+        near = np.logical_or.reduce(pairs, axis=1)
         return {*near.nonzero()[0].tolist(), *self._led, *(k for k, at in enumerate(self.at) if at.unsure)}
 
     def count_faults(self, *some: int) -> int:
@@ -216,25 +219,29 @@ class PlacedLabels:
 
         What is set only makes places dearer or takes them: one that is not touched stays the cheapest.
         """
-        gap = max(CLEAR, WORD * label.height)
-        since = self.boxes[begin:end].T
-        if len(ink_index.find_near(since, box, gap)):
-            return False
-        reach = abs(box.nearest(label.anchor) - label.anchor) + CLEAR
-        return not self._led or not len(ink_index.find_near(self._led_sides, box, reach))
+        since = self.boxes[begin:end].T, max(CLEAR, WORD * label.height)
+        leaders = self._led_sides, abs(box.nearest(label.anchor) - label.anchor) + CLEAR
+        return not any(len(ink_index.find_near(sides, box, reach)) for sides, reach in (since, leaders))
 
     def improve_all(self, around: Around) -> bool:
         """Give labels with which something is wrong better places, one after another; whether any has got one."""
         return sum(self.improve(k, around) for k in range(len(self.at)) if k in self._disturbed) > 0
 
     def improve(self, k: int, around: Around) -> bool:
-        """Give label ``k`` a better place if something is wrong with it, and what it meets another one if need be."""
-        if not self.count_faults(k):
+        """Give label ``k`` a better place if something is wrong with it, and what it meets another one if need be.
+
+        Where that was in vain it is not tried again before something has moved where it was looked for.
+        """
+        if (k, around is CLOSER) in self._in_vain or not self.count_faults(k):
             return False
+        self.looked.clear()
         # One that has no better place gets it when the one it meets makes room, or else all that stand where it had better be.
         ways = ((k,), *(pair for q in self.in_conflict(k) for pair in ((k, q), (q, k))))
-        return any(self.set_again(some, around) for some in ways) or (
+        found = any(self.set_again(some, around) for some in ways) or (
             around is CLOSER and (self.set_alone(k) or any(self.make_room(*pair) for pair in ways[1:])))
+        if not found:
+            self._in_vain[k, around is CLOSER] = np.array([_extent(*each).inset(-_reach(each[0])) for each in self.looked]).T
+        return found
 
     def _place_again(self, k: int, around: Around) -> None:
         (candidates,) = candidate_places(self, [self.labels[k]], around)
@@ -254,6 +261,9 @@ class PlacedLabels:
             else:
                 self._place_again(k, around)
         if self.count_faults(*some) < faults and all(self.at[k].free >= was.free for k, was in zip(some, before, strict=True)):
+            moved = [_extent(*placement[:2]) for placement in (*before, *(self.at[k] for k in some))]
+            self._in_vain = {key: looked for key, looked in self._in_vain.items()
+                             if not any(len(ink_index.find_near(looked, box, 0.0)) for box in moved)}
             return True
         self._put_back(some, before)
         return False
@@ -360,20 +370,17 @@ class Places:
     def __init__(self, placed: PlacedLabels, label: Label, candidates: _Candidates) -> None:
         self.label, self._placed = label, placed
         self.sides, cost, self._strayed, clear, around = candidates
+        placed.looked.append((label, around))
         free = clear.nonzero()[0]
         near = placed.boxes[ink_index.find_near(placed.boxes.T, around, CLEAR)]
-        if len(free) and len(near):
-            free = free[~_overlap(self.sides[:, free] + _MARGIN, near)]
+        free = free[~_overlap(self.sides[:, free] + _MARGIN, near)]
         some = free if len(free) else np.arange(len(cost))  # what the others would cost nobody asks
         there = self.sides[:, some]
         gap = WORD * label.height
         read_on = reads_on(there, placed.written[ink_index.find_near(placed.written.T, around, gap)], gap)
-        more = cost[some] + RUN_ON * read_on
         leaders = placed.leaders[ink_index.find_near(placed.leaders.T, around, CLEAR)]
-        if len(leaders):
-            more += COVERING * _overlap(there + _MARGIN, leaders)
         self.cost = np.zeros(len(cost)) + np.inf
-        self.cost[some] = more
+        self.cost[some] = cost[some] + RUN_ON * read_on + COVERING * _overlap(there + _MARGIN, leaders)
         self.run_on = np.zeros(len(cost), bool)
         self.run_on[some] = read_on
         self.free = free[self.cost[free].argsort(kind="stable")]
@@ -391,13 +398,16 @@ class Places:
         # What is wrong with the spot that is named is wrong with every place: one with nothing else is as good as any.
         spot = here.unsure * np.where(self.led, CROSSING * owners.LED if here.head is None else IN_HEAD, VAGUE * owners.SPOT) \
             if here.unsure else None
-        for rank, k in enumerate(self.free.tolist()):
+        asked = self.free if leaders else self.free[~self.led[self.free]]
+        if spot is not None:
+            asked = asked[self.cost[asked] + spot[asked] < least]
+        for rank, k in enumerate(asked.tolist()):
             if self.cost[k] >= enough:
                 break
-            if (not leaders and self.led[k]) or (spot is not None and self.cost[k] + spot[k] >= least):
+            if spot is not None and self.cost[k] + spot[k] >= least:
                 continue
             if k not in found:
-                some = self.free[rank:rank + max(MANY, rank)].tolist()
+                some = asked[rank:rank + max(MANY, rank)].tolist()
                 found |= zip(some, self.faults(here, some), strict=True)
             fault = found[k]
             if not fault or (spot is not None and fault <= spot[k]):
@@ -511,10 +521,19 @@ def surroundings(ink: InkIndex, label: Label) -> owners.Surroundings:
     """What is near the anchor of a label, as far as it may stand from there; of lines on the ink it is looked for once."""
     found: owners.Surroundings | None = ink.surroundings.get(label)
     if found is None:
-        reach = 2 * (NEAR + label.gap) + size(label.text, label.height)[0]
-        found = ink.surroundings[label] = owners.Surroundings(ink, label, reach)
+        found = ink.surroundings[label] = owners.Surroundings(ink, label, _reach(label))
     found.meet_leaders()
     return found
+
+
+def _reach(label: Label) -> float:
+    """How far from the anchor of a label that is read without a leader anything matters, mm."""
+    return 2 * (NEAR + label.gap) + size(label.text, label.height)[0]
+
+
+def _extent(label: Label, box: Box) -> Box:
+    """The rectangle round a label's lettering and what it names, with the leader between them."""
+    return Box.around(np.append(box.corners, label.anchor))
 
 
 def leader_to(label: Label, box: Box) -> tuple[complex, complex] | None:

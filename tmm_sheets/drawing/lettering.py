@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cache, lru_cache
 from itertools import accumulate
 from math import inf
@@ -139,7 +139,8 @@ def _advance(text: str) -> float:
     return sum([glyph(c).advance for c in text])
 
 
-def strokes(text: str, height: float) -> list[Points]:
+@lru_cache(maxsize=4096)  # a note looks many times how far the same letters reach
+def strokes(text: str, height: float) -> Sequence[Points]:
     """Centre lines of a run of letters, complex (n,) mm, left end of the baseline at 0; the pen is ``height``/10 wide."""
     out: list[Points] = []
     x = 0.0

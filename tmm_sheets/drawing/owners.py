@@ -14,7 +14,19 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.drawing.canvas import Label
-from tmm_sheets.drawing.ink_index import LEADER, ROUNDING, Flags, Floats, InkIndex, Numbers, crosses, distance, enters, sides
+from tmm_sheets.drawing.ink_index import (
+    LEADER,
+    ROUNDING,
+    Flags,
+    Floats,
+    InkIndex,
+    Numbers,
+    are_near,
+    crosses,
+    distance,
+    enters,
+    sides,
+)
 from tmm_sheets.drawing.marks import Box, Fill, Points, flat
 from tmm_sheets.drawing.text_layout import run_corners
 
@@ -109,9 +121,7 @@ class Surroundings:
 
     def _near(self, boxes: Floats, reach: Any) -> tuple[Numbers, Numbers]:
         """Pairs of a rectangle, shape (4, m), and a segment within reach of it, by their numbers."""
-        x0, y0, x1, y1 = boxes[:, :, None]
-        e0, f0, e1, f1 = self.sides
-        which, near = ((e0 <= x1 + reach) & (e1 >= x0 - reach) & (f0 <= y1 + reach) & (f1 >= y0 - reach)).nonzero()
+        which, near = are_near(self.sides, boxes[:, :, None], reach).nonzero()
         return which, near
 
     def count_crossed(self, starts: Points, ends: Points) -> Numbers:
@@ -119,18 +129,17 @@ class Surroundings:
 
         Other leaders count more. ``starts``, at what is named, and ``ends``: shape (m,).
         """
-        if not len(self.a):
-            return np.zeros(len(ends), int)
         which, near = self._near(sides(starts, ends), BESIDE + ROUNDING)
-        a, b, start, end = self.a[near], self.b[near], starts[which], ends[which]
-        along, d = end - start, b - a
+        along, d, foreign = (ends - starts)[which], (self.b - self.a)[near], ~self.own[near]
         parallel = np.abs((d * np.conj(along)).imag) < PARALLEL * np.abs(d) * np.abs(along)
-        apart = np.minimum(distance(start, end, a), distance(start, end, b))
-        beside = np.minimum(apart, np.minimum(distance(a, b, start + 0.5 * along), distance(a, b, end)))
-        leader, foreign = self.leaders[near], ~self.own[near]
-        crossed = foreign & (self.strong[near] & crosses(a, b, start, end) | leader & meet(a, b, start, end))
-        count = 1 * (parallel & (beside < BESIDE)) + crossed + (LED - 1) * (crossed & leader)
-        return np.bincount(which, count, len(ends)).astype(int) + LED * self.count_unsure(self.first_met(starts, ends))
+        met = LED * self.count_unsure(self.first_met(starts, ends))
+        # Each is asked of those pairs only that it may be true of.
+        for asked, meets, weight in ((parallel, _run_along, 1), (foreign & self.strong[near], crosses, 1),
+                                     (foreign & self.leaders[near], meet, LED)):
+            some = asked.nonzero()[0]
+            of, line = which[some], near[some]
+            met += weight * np.bincount(of[meets(self.a[line], self.b[line], starts[of], ends[of])], minlength=len(ends))
+        return met
 
     def first_met(self, starts: Points, ends: Points) -> Points:
         """Where an eye that comes along each leader meets what is named: at the edge of the head in which the leader ends."""
@@ -143,8 +152,8 @@ class Surroundings:
 
     def count_unsure(self, starts: Points) -> Numbers:
         """How many foreign strong lines, or other vectors on its line, a leader from each point, shape (m,), might name as well."""
-        found: Numbers = np.add.reduce(self._apart(starts) < UNSURE, axis=1)
-        return found
+        once = starts[:1] if (starts == starts[:1]).all() else starts  # most leaders begin at one anchor
+        return np.asarray(np.add.reduce(self._apart(once) < UNSURE, axis=1) + np.zeros(len(starts), int))
 
     def _apart(self, points: Any) -> Floats:
         """Distances of points, shape (m,), to foreign strong lines and other vectors on the label's line, mm, shape (m, n)."""
@@ -172,6 +181,12 @@ class Surroundings:
         along = a + np.linspace(min(SHARES), max(SHARES), FINE) * (b - a)
         far = Surroundings(self._ink, self._label, abs(b - a))
         return complex(along[np.argmax(far._apart(along).min(axis=1))])
+
+
+def _run_along(a: Points, b: Points, start: Points, end: Points) -> Flags:
+    """Which segments a .. b, parallel to leaders, each to its own, are beside them, or where they end."""
+    apart = (distance(start, end, a), distance(start, end, b), distance(a, b, start + 0.5 * (end - start)), distance(a, b, end))
+    return np.asarray(np.minimum.reduce(apart) < BESIDE)
 
 
 def meet(a: Points, b: Points, start: Any, end: Any) -> Flags:
@@ -248,9 +263,7 @@ class Pairs(NamedTuple):
         found, hardly = np.zeros(m) + inf, np.zeros(m, int)
         if not runs.boxes.size:
             return found, hardly
-        x0, y0, x1, y1 = boxes[:, self.which]
-        e0, f0, e1, f1 = sides(self.a, self.b)
-        near = (e0 <= x1 + SEEN) & (e1 >= x0 - SEEN) & (f0 <= y1 + SEEN) & (f1 >= y0 - SEEN)
+        near = are_near(sides(self.a, self.b), boxes[:, self.which], SEEN)
         # Of its own the vector alone, not the thin line on which it was laid off and which goes on beyond it.
         drawn = np.bincount(self.which[self.own & self.strong], minlength=m)[self.which] > 0
         asked = (near & (self.strong | self.own & ~drawn) & (runs.counts[self.which] > 0)).nonzero()[0]
@@ -263,8 +276,7 @@ class Pairs(NamedTuple):
         pair = asked.repeat(count)  # each segment and each run
         which, own, twin = self.which[pair], (self.own & ~self.twin)[pair], self.twin[pair]
         run = runs.begins[which] + np.arange(len(pair)) - (count.cumsum() - count).repeat(count)
-        x, y = boxes[:2, which]
-        gaps = _to_box(self.a[pair], self.b[pair], runs.boxes[:, run] + np.array([x, y, x, y]))[0]
+        gaps = _to_box(self.a[pair], self.b[pair], runs.boxes[:, run] + boxes[[0, 1, 0, 1]][:, which])[0]
         first = _firsts(which)
         rows = which[first]
         foreign, nearest_own = (np.minimum.reduceat(np.where(of, gaps, inf), first) for of in (~own & ~twin, own))
@@ -288,13 +300,10 @@ def read_well(ink: InkIndex, labels: Sequence[Label], boxes: Floats) -> Flags:
     As :meth:`Surroundings.judge`, of all labels in one go.
     """
     p = np.array([label.anchor for label in labels])
-    x0, y0, x1, y1 = boxes
-    way = np.abs(nearest(p, boxes) - p)
     subjects = [_subject(ink, label) for label in labels]
-    reach = np.maximum(way + 2 * AT + ROUNDING, [0.0 if vector is None else SEEN for _, vector in subjects])
-    e0, f0, e1, f1 = ink.sides
-    which, near = (ink.parts & (e0 <= (x1 + reach)[:, None]) & (e1 >= (x0 - reach)[:, None]) & (f0 <= (y1 + reach)[:, None])
-                   & (f1 >= (y0 - reach)[:, None])).nonzero()
+    reach = np.maximum(np.abs(nearest(p, boxes) - p) + 2 * AT + ROUNDING,
+                       [0.0 if vector is None else SEEN for _, vector in subjects])
+    which, near = (ink.parts & are_near(ink.sides, boxes[:, :, None], reach[:, None])).nonzero()
     a, b, of = ink.a[near], ink.b[near], ink.of[near]
     own, twin = _belongings(ink, labels, subjects, which, a, b, of)
     runs = [_runs(label.text, label.height)[:, :None if vector else 0] for (_, vector), label in zip(subjects, labels, strict=True)]

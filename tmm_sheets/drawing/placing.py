@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from tmm_sheets.drawing import labels
 from tmm_sheets.drawing.canvas import SMALLEST, AxisNumber, Canvas, PlacedNote
-from tmm_sheets.drawing.ink_index import WORSE, InkIndex, distance, enters
+from tmm_sheets.drawing.ink_index import WORSE, InkIndex, are_near, distance, enters
 from tmm_sheets.drawing.lettering import PEN, extents, letter
 from tmm_sheets.drawing.marks import Arc, Box, Line, Mark, Points, Polyline, Text, flat, run
 from tmm_sheets.drawing.owners import AT
@@ -57,10 +57,8 @@ def interrupt(canvas: Canvas) -> None:
         return
     lines = [_chords(mark) for _, mark in yields]
     z, begin = np.concatenate(lines), np.cumsum([0, *map(len, lines)])[:-1]
-    x0, y0, x1, y1 = letters.bounds
-    near = np.ones((len(lines), len(x0)), bool)
-    for v, low, high in ((z.real, x0, x1), (z.imag, y0, y1)):
-        near &= (np.minimum.reduceat(v, begin)[:, None] <= high) & (np.maximum.reduceat(v, begin)[:, None] >= low)
+    edges = np.array([end.reduceat(v, begin) for end in (np.minimum, np.maximum) for v in (z.real, z.imag)])
+    near = are_near(edges[:, :, None], letters.bounds, 0.0)
     for i in np.flatnonzero(near.any(axis=1)):
         k, mark = yields[i]
         gaps = _gaps(lines[i], letters, np.flatnonzero(near[i]))
