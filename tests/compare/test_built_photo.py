@@ -10,8 +10,6 @@ from tests.compare.hypotheses import Slip
 from tests.compare.own_layouts import Drawn, follows
 from tests.compare.slip_photographs import followed
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare import codes
-from tmm_sheets.compare.codes import Number
 from tmm_sheets.compare.diagnosis.built_plan import PlanPoint, errors_of
 from tmm_sheets.compare.elements import known_sheet
 from tmm_sheets.compare.photo import image, tracing
@@ -86,8 +84,8 @@ def coriolis():
 def test_the_mistake_is_named_in_every_plan_that_follows_from_it(coriolis):
     built, _, _ = coriolis
     assert {v.name for v in built} == set(NAMES)
-    assert {plan.mistake.kind for plan, _ in built.values()} == {"coriolis"}
-    assert all(plan.explains == plan.of for plan, _ in built.values())
+    assert {plan.beside["kind"] for plan, _ in built.values()} == {"coriolis"}
+    assert all(plan.beside["explains"] == plan.beside["of"] for plan, _ in built.values())
 
 
 def test_what_follows_is_told_as_such(coriolis):
@@ -103,7 +101,7 @@ def test_what_follows_is_told_as_such(coriolis):
 @pytest.mark.trial
 def test_two_mistakes_are_both_named():
     built, findings = examined(slipped(coriolis=other_way, inertia=backwards)[0])
-    assert {v.name: plan.mistake.kind for v, (plan, _) in built.items()} == dict(zip(NAMES, ("coriolis", "inertia"), strict=True))
+    assert {v.name: plan.beside["kind"] for v, (plan, _) in built.items()} == dict(zip(NAMES, ("coriolis", "inertia"), strict=True))
     bad = [f for f in findings if f.verdict != "green" and f.element.role == "vector"]
     assert bad
     assert all("as follows from the mistake" in f.what for f in bad)
@@ -120,7 +118,7 @@ def test_a_mistake_is_named_though_part_of_the_plan_is_hidden():
     half = round(0.2 * longest.length)
     hidden[row - half:row + half, column - half:column + half] = True
     built, _ = examined(elements, hidden)
-    assert {plan.mistake.kind for plan, _ in built.values()} == {"coriolis"}
+    assert {plan.beside["kind"] for plan, _ in built.values()} == {"coriolis"}
     hidden[:] = False
     x, y = (np.concatenate([part(e.points) for e in plan]) for part in (np.real, np.imag))
     hidden[round(PAPER.y1 - y.max()) - 5:round(PAPER.y1 - y.min()) + 5, round(x.min()) - 5:round(x.max()) + 5] = True
@@ -245,6 +243,6 @@ def test_a_point_that_is_off_is_told_as_one_that_others_follow_only_where_lines_
         element = SimpleNamespace(role="vector", kind="line", points=ends)
         return SimpleNamespace(element=element, verdict="red", trace=SimpleNamespace(at=ends + 1j * np.array(off)))
 
-    built = (SimpleNamespace(mistake=codes.POINT_MOVED(point="a", distance=Number("3.0"))), points)
+    built = (SimpleNamespace(beside={}), points)
     assert image.borne_out(built, [red(*line) for line in lines]) is borne
-    assert image.borne_out((SimpleNamespace(mistake=object()), points), [])  # one of the usual mistakes
+    assert image.borne_out((SimpleNamespace(beside={"kind": "coriolis"}), points), [])  # one of the usual mistakes

@@ -14,8 +14,9 @@ from tests.compare.untidy import PROJECTS, trial
 from tests.few import seldom
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.cad import cad_drawing, cad_file
+from tmm_sheets.compare.cad.cad_ink import Writing
 from tmm_sheets.compare.cad.line_fit import MOST
-from tmm_sheets.compare.cad.plan_ink import Lettering, PlanInk
+from tmm_sheets.compare.cad.plan_ink import PlanInk
 from tmm_sheets.compare.cad.plan_views import PlanRecord, titles
 from tmm_sheets.compare.report_pages import page
 from tmm_sheets.errors import CannotBuild
@@ -70,8 +71,8 @@ def test_the_terminal_the_json_and_the_page_count_alike():
     """Lines that no mistake explains apart: each is right, wrong, or not drawn."""
     report = case(ROCKER, "own_layout_wrong_titled.dxf")
     summary = report.tree["summary"]
-    said = re.search(r"(\d+) green, (\d+) amber, (\d+) red, (\d+) not judged", report.text)
-    assert [int(n) for n in said.groups()] == [summary[k] for k in ("green", "amber", "red", "not_judged")]
+    said = re.search(r"(\d+) green \(up to 0.\d+ mm\), (\d+) amber, (\d+) red(?:, (\d+) not judged)?", report.text)
+    assert [int(n) for n in said.groups("0")] == [summary[k] for k in ("green", "amber", "red", "not_judged")]
     html = page(report, ".html", "").decode()
     assert said.group() in html
     assert html.index("normal acceleration") < html.index("<table>")
@@ -142,7 +143,7 @@ def test_of_very_many_strokes_the_longest_are_looked_at(tmp_path):
     ("План положений", "positions", None), ("Положение 7", "positions", "7"), ("Velocity plan, position 4", "velocities", "4"),
     ("Масштаб 1:2", None, None)])
 def test_what_a_title_names(text, kind, label):
-    found = titles([Lettering(text, 0j, 0.0)])
+    found = titles([Writing(text, 0j, 5.0, 50.0, 0.0, 0)])
     assert [(t.kind, t.label) for t in found] == ([(kind, label)] if kind else [])
 
 

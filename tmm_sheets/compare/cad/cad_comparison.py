@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar, Literal
 
@@ -55,7 +55,7 @@ class CadFinding(Finding):
     shift, turn, size : shift (right, up), mm, turn, degrees counter-clockwise, and excess of length or radius, mm, where these can
         be told apart
     missing : whether it is not there at all
-    absent : the kind it is left out with, where all of that are, which is told of the view; else ""
+    absent : the kind it is left out with, where all of that are, or its name; which is told of the view; else ""
     entities : numbers of the entities of the drawing it is made of
     says : what a text says instead of what it should
     """
@@ -72,7 +72,10 @@ class CadFinding(Finding):
 
 @dataclass(frozen=True)
 class ExtraStroke:
-    """Ink or text that belongs to no element: ``length`` mm within ``reach`` of ``at``, from ``count`` entities."""
+    """Ink or text that belongs to no element: ``length`` mm within ``reach`` of ``at``, from ``count`` entities.
+
+    ``view`` is the one that it was drawn in, and ``ends`` where, if these are known.
+    """
 
     kind: Literal["line", "arc", "text", "fill"]
 
@@ -82,6 +85,8 @@ class ExtraStroke:
     reach: float
     count: int = 1
     text: str = ""
+    view: ElementView | None = None
+    ends: Points = field(default_factory=lambda: np.zeros(0, complex))
 
     @property
     def verdict(self) -> Verdict:
@@ -199,12 +204,9 @@ class Comparison:
 
     def ours(self, numbers: Sequence[int]) -> tuple[KnownLines, npt.NDArray[np.int64], Numbers]:
         """Straight pieces of the paths of some elements, the element of each piece, and how far along its path it begins, mm."""
-        strokes, owners = [], []
-        for n in numbers:
-            strokes += self.paths[n]
-            owners += [n] * len(self.paths[n])
-        made = lines(strokes)
-        of = np.array(owners, dtype=np.int64)[made.owner] if owners else np.zeros(0, np.int64)
+        strokes = [(n, path) for n in numbers for path in self.paths[n]]
+        made = lines(path for _, path in strokes)
+        of = np.array([n for n, _ in strokes], dtype=np.int64)[made.owner]
         along = np.concatenate(([0.0], np.cumsum(made.length)))[:-1]
         start = np.full(len(self.elements), np.inf)
         np.minimum.at(start, of, along)

@@ -41,7 +41,7 @@ from tmm_sheets.compare.cad.plan_ink import Figure, PlanInk, lies_along
 from tmm_sheets.compare.cad.plan_judge import JudgedPlans, judge_plans
 from tmm_sheets.compare.cad.plan_views import PlanRecord
 from tmm_sheets.compare.cad.registration import fitting, register
-from tmm_sheets.compare.diagnosis.built_plan import DrawnPlan, FigureOf, built_otherwise, led_elsewhere, rebuilt, vanished
+from tmm_sheets.compare.diagnosis.built_plan import DrawnPlan, FigureOf, built_otherwise, led_elsewhere, of_built, rebuilt, vanished
 from tmm_sheets.compare.elements import (
     Element,
     ElementView,
@@ -52,7 +52,7 @@ from tmm_sheets.compare.elements import (
     sheet_numbers,
     views as views_of,
 )
-from tmm_sheets.compare.findings import Report, verdict, worst
+from tmm_sheets.compare.findings import Report, point, verdict, worst
 from tmm_sheets.compare.placing import BESIDE, Placing, links, moved, read_places, symbol
 from tmm_sheets.drawing.marks import Drawing, Points
 from tmm_sheets.errors import BadInput, CannotBuild
@@ -195,14 +195,13 @@ def lettered(project: Project, known: Sequence[KnownSheet], ink: CadInk) -> tupl
     theirs, here = _words(texts), words.paper()
     if len(texts) < FEWEST or _share(theirs, known) >= READ:
         return here, known
-    best, least = (here, known), _share(theirs, known) + MORE
+    others = {}
     for language in words.LANGUAGES:
         if language != here:
             with words.on_paper(language):
-                said = [known_sheet(type(project)(project.variant), sheet.n) for sheet in known]
-            if (share := _share(theirs, said)) > least:
-                best, least = (language, said), share
-    return best
+                others[language] = [known_sheet(type(project)(project.variant), sheet.n) for sheet in known]
+    best = max(others, key=lambda language: _share(theirs, others[language]))
+    return (best, others[best]) if _share(theirs, others[best]) > _share(theirs, known) + MORE else (here, known)
 
 
 def _share(theirs: set[str], known: Iterable[KnownSheet]) -> float:
@@ -220,8 +219,6 @@ MANY_STROKES = 250
 """A drawing with more straight strokes may be a sheet of ours: the plans of a layout of its own have dozens."""
 MOSTLY_PLANS = 0.4
 """Share of a drawing's straight ink from which on plans of its own layout are what it shows."""
-LEGEND, MARGIN = 45.0, 25.0
-"""Room of the legend of the overlay, to the left, and round it, mm."""
 
 
 @dataclass(frozen=True)
@@ -278,28 +275,10 @@ def compared(project: Project, sheet: int | None, path: Path, views: Path | None
         if not mostly and not may_be_ours:
             found = examine(project, numbers, ink, views, pencil, say)
         if mostly or (found is None and (judged.fitting or any(v.kind == "unlike" and v.title for v in judged.views))):
-            return _of_plans(project, sheet or _sheet_of(project, judged), path, space, judged, pencil, ink.notes)
+            found = plan_report.examined(sheet or _sheet_of(project, judged), path.stem, judged, ink.notes)
     if found is None:
         raise _refusal(project, numbers, ink, sheet, other if may_be_ours else _other_sheet(project, ink, sheet), path)
-    return _of_sheet(project, found, path, pencil, say)
-
-
-def _of_plans(project: Project, sheet: int, path: Path, space: DrawingSpace, judged: JudgedPlans, pencil: float,
-              notes: Sequence[str]) -> ComparedDrawing:
-    """The report on plans in a layout of its own."""
-    report = plan_report.plan_report(project.variant.project.name, sheet, path, space, judged, pencil, notes)
-    scaled = space.placed(Placing(complex(judged.ink.scale)))
-    if judged.mirrored:
-        scaled = scaled.placed(Placing(mirrored=True))
-    z = np.concatenate([*(s.points for s in scaled.strokes), np.array([w.at for w in scaled.writings], dtype=complex)])
-    corner = complex(z.real.min() - LEGEND, z.imag.min() - MARGIN)
-    blank = Drawing(float(np.ptp(z.real)) + LEGEND + MARGIN, float(np.ptp(z.imag)) + 2 * MARGIN, path.stem, ())
-    shift = Placing(shift=-corner)
-    exact = tuple(shift(z) for z in plan_report.exact_lines(judged))
-    on_paper_ = scaled.placed(shift)
-    places = [(complex(shift(at)), *rest) for at, *rest in plan_report.marked_places(judged)]
-    files = overlays.files(sheet, blank, exact, on_paper_, places)  # type: ignore[arg-type]
-    return ComparedDrawing(replace(report, files=files), sheet, blank, on_paper_, exact)
+    return _told(project, found, path, say)
 
 
 def _sheet_of(project: Project, judged: JudgedPlans) -> int:
@@ -314,20 +293,18 @@ def _sheet_of(project: Project, judged: JudgedPlans) -> int:
     return max(range(1, len(project.sheets) + 1), key=lambda n: (shown(n), -n))
 
 
-def _of_sheet(project: Project, found: cad_report.ExaminedDrawing, path: Path, pencil: float,
-              say: Callable[[str], None]) -> ComparedDrawing:
-    """The report on a drawing of a sheet of ours, with its overlays."""
+def _told(project: Project, found: cad_report.ExaminedDrawing, path: Path, say: Callable[[str], None]) -> ComparedDrawing:
+    """The report on a drawing, with its overlays."""
     say(tell("overlay"))
-    outcome, laid = found.outcome, found.laid
-    gone = cad_report.gone(outcome)
-    places = [(f.at, f.reach, str(f.element.number), str(f.verdict)) for f in worst(outcome.findings) if f.element.view not in gone]
-    places += [(x.at, x.reach, f"+{k}", str(x.verdict)) for k, x in enumerate(outcome.extras, 1)]
+    outcome, on_paper = found.outcome, found.paper
+    places = [(complex(on_paper(f.at)), f.reach, str(f.element.number), str(f.verdict))
+              for f in worst(outcome.findings) if f.element.view not in found.lost]
+    places += [(complex(on_paper(x.at)), x.reach, f"+{k}", str(x.verdict)) for k, x in enumerate(outcome.extras, 1)]
     looks = [(look.places, f"~{k}") for k, look in enumerate(outcome.looks, 1)]
-    exact = tuple(p for e in found.exact for p in drawn(e))
-    files = overlays.files(laid.known.n, laid.known.sheet.drawing, exact, found.space, places, looks)
-    report = replace(cad_report.report(project.variant.project.name, path, found, pencil), files=files)
-    blank = replace(laid.known.sheet.drawing, marks=(), views=(), dimensions=(), forms=())
-    return ComparedDrawing(report, laid.known.n, blank, found.space, exact)
+    exact, space = tuple(on_paper(p) for e in found.exact for p in drawn(e)), found.space.placed(on_paper)
+    files = overlays.files(found.sheet, found.blank, exact, space, places, looks)
+    report = replace(cad_report.report(project.variant.project.name, path, found), files=files)
+    return ComparedDrawing(report, found.sheet, replace(found.blank, marks=(), views=(), dimensions=(), forms=()), space, exact)
 
 
 def examine(project: Project, numbers: range, ink: CadInk, views: Path | None = None, pencil: float = 0.25,
@@ -377,7 +354,17 @@ def _examined(project: Project, views: Path | None, pencil: float, say: Callable
     if not _of_this_sheet(outcome):  # one mistake may lead everything elsewhere
         return None
     notes = (*ink.notes, *registration.laying_told(laid, ink.unit), *places.notes, *outcome.notes)
-    return cad_report.ExaminedDrawing(laid, space, places, outcome, notes, {view: plan for view, (plan, _) in built.items()})
+    p, moves = laid.placing, places.moves
+    exact = tuple(moved(e, moves[e.view]) if e.view in moves else e for e in laid.known.elements)
+    beside = {
+        "placing": {"scale": p.scale, "degrees": round(p.degrees, 4), "shift": point(p.shift), "mirrored": p.mirrored,
+                    "share": round(laid.share, 4)},
+        "views": [{"view": v.name, "share": round(s, 4), **(
+            {"shift": point(complex(moves[v](v.box.centre)) - v.box.centre), "size": round(moves[v].scale, 6)}
+            if v in moves else {})} for v, s in places.share.items()]}
+    whole = [cad_report.mirror_told(round(p.degrees / 90) % 4 == 2)] if p.mirrored else []
+    return cad_report.ExaminedDrawing(laid.known.n, space, laid.known.sheet.drawing, exact, pencil, outcome, notes, whole,
+                                      of_built(built), beside, Placing())
 
 
 def _matched(known: Sequence[Element], now: Sequence[Element], absent: Collection[ElementView], space: DrawingSpace,

@@ -26,6 +26,7 @@ from tmm_sheets.compare.cad.cad_comparison import (
 )
 from tmm_sheets.compare.cad.cad_ink import Entity, normal
 from tmm_sheets.compare.cad.line_fit import KnownLines, Left, Numbers, common, extent, hanging_together, pieces, shapes
+from tmm_sheets.compare.cad.plan_ink import CENTRES, RESULTANTS
 from tmm_sheets.compare.cad.symbol_matching import AT_TIP
 from tmm_sheets.compare.codes import Number, joined
 from tmm_sheets.compare.elements import Element, grouped
@@ -55,6 +56,8 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "axis": marked_n("{n} line of the axes", "{n} lines of the axes"),
     "point": marked_n("{n} dot", "{n} dots"),
     "text": marked_n("{n} text", "{n} texts"),
+    CENTRES: marked_n("{n} vector to a centre of mass", "{n} vectors to centres of mass"),
+    RESULTANTS: marked_n("{n} resultant", "{n} resultants"),
 }
 """What may be left out, and how many of a kind in words."""
 

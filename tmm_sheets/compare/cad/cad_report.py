@@ -1,13 +1,14 @@
-"""The report on a comparison of a CAD drawing with a sheet of ours: table, JSON, and the story view by view with pictures."""
+"""The report on a CAD drawing, whatever its layout: table, JSON, and the story view by view with pictures, and its overlays."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Container, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import radians
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,8 +16,7 @@ from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import cad_extras
 from tmm_sheets.compare.cad.cad_comparison import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
-from tmm_sheets.compare.cad.registration import Layout, Registration
-from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built, told_view
+from tmm_sheets.compare.diagnosis.built_plan import SHOWN, told_view
 from tmm_sheets.compare.diagnosis.hypotheses import built_otherwise
 from tmm_sheets.compare.elements import Element, ElementView, drawn
 from tmm_sheets.compare.findings import (
@@ -35,8 +35,8 @@ from tmm_sheets.compare.findings import (
     said_verdict,
     worst,
 )
-from tmm_sheets.compare.placing import moved
-from tmm_sheets.drawing.marks import Role
+from tmm_sheets.compare.placing import Placing
+from tmm_sheets.drawing.marks import Drawing, Role
 from tmm_sheets.numbers import told
 from tmm_sheets.words import tell, tell_n
 
@@ -50,36 +50,46 @@ VIEW_GONE = 0.15
 
 @dataclass(frozen=True)
 class ExaminedDrawing:
-    """A drawing compared with a sheet.
+    """A drawing compared with a sheet, or with the plans that its titles promise.
 
     Attributes
     ----------
-    laid : the drawing laid over the sheet, in its own units
-    space : the same in mm of the sheet
-    places : where its views are
+    sheet : number of the sheet, or of one with such plans
+    space : the drawing, mm
+    blank, paper : paper for all of it, and how it comes to lie on that
+    exact : what the findings are on as it should be, where the drawing has its view; the findings have it as it was built
+    tolerance : how far a line may be off, mm
     outcome : what was found
     notes : what was done to the drawing and what deserves a warning, one line each
-    built : plans that were built on a wrong step, with what that was
+    whole : what is listed of the whole drawing
+    of_views : what is listed of whole views: plans that were built on a wrong step, or are others
+    tables : before those of what deviates
+    beside : further keys of JSON
     """
 
-    laid: Registration
+    sheet: int
     space: DrawingSpace
-    places: Layout
+    blank: Drawing
+    exact: tuple[Element, ...]
+    tolerance: float
     outcome: CadOutcome
     notes: tuple[str, ...]
-    built: Mapping[ElementView, BuiltPlan] = field(default_factory=dict)
+    whole: Sequence[FindingRecord]
+    of_views: Mapping[ElementView, FindingRecord]
+    beside: Mapping[str, Any]
+    paper: Placing
+    tables: tuple[StoryTable, ...] = ()
 
     @cached_property
-    def exact(self) -> tuple[Element, ...]:
-        """What the findings are on as it should be, where the drawing has its view; the findings have it as it was built."""
-        return tuple(moved(e, self.places.moves[e.view]) if e.view in self.places.moves else e for e in self.laid.known.elements)
+    def lost(self) -> set[ElementView]:
+        """Views that are missing from the drawing."""
+        return gone(self.outcome)
 
-    @property
-    def mirrored(self) -> str:
-        """How the whole drawing lies as in a mirror, a key of ``WORDS``; "" where it does not. Paper may be turned, not that."""
-        placing = self.laid.placing
-        across = round(placing.degrees / 90) % 4 == 2
-        return ("mechanism across" if across else "mechanism upside down") if placing.mirrored else ""
+
+def mirror_told(across: bool) -> FindingRecord:
+    """That the whole drawing lies as in a mirror: paper may be turned, not that."""
+    key = "mechanism across" if across else "mechanism upside down"
+    return FindingRecord(built_otherwise(key), "red", beside={"kind": "mirror", "mistake": key}, whole=True)
 
 
 def gone(outcome: CadOutcome) -> set[ElementView]:
@@ -107,21 +117,21 @@ def _found_by(entities: Sequence[Entity]) -> str:
     return said.format(entity=entities[0], n=len(entities) - 1)
 
 
-def _tables(found: ExaminedDrawing, lost: set[ElementView]) -> Iterator[StoryTable]:
+def _tables(found: ExaminedDrawing) -> Iterator[StoryTable]:
     """Of what deviates, what is extra, and what has another type or width of line."""
     last = (tell("verdict"), tell("in the drawing"))
     no, view = tell("no."), tell("view")
     for title, head, rows in (
-            (tell("deviations"), (no, view, tell("element"), tell("deviation"), *last), _deviations(found, lost)),
+            (tell("deviations"), (no, view, tell("element"), tell("deviation"), *last), _deviations(found)),
             (tell("extra, on no element of the sheet"), (no, tell("what"), tell("about, mm"), *last), _extras(found.outcome)),
             (tell("of another type or width of line"), (no, view, tell("lines"), tell("what"), *last), _looks(found))):
         if rows:
             yield StoryTable(title[:1].upper() + title[1:], head, tuple(rows))
 
 
-def _summary(found: ExaminedDrawing, lost: set[ElementView], records: Sequence[FindingRecord]) -> str:
+def _summary(found: ExaminedDrawing, records: Sequence[FindingRecord]) -> str:
     """How many findings got each verdict: the numbers of the JSON."""
-    outcome = found.outcome
+    outcome, lost = found.outcome, found.lost
     beside = tables_and_texts(outcome)
     colours = Counter(r.verdict for r in records)
     most = max((f.deviation for f in outcome.findings if f.verdict == "green" and f.element.view not in lost), default=0.0)
@@ -141,11 +151,12 @@ def _summary(found: ExaminedDrawing, lost: set[ElementView], records: Sequence[F
         unlike=len({n for look in outcome.looks for n in look.elements}))
 
 
-def _deviations(found: ExaminedDrawing, lost: set[ElementView]) -> list[tuple[str, ...]]:
+def _deviations(found: ExaminedDrawing) -> list[tuple[str, ...]]:
     """A row for every element that is not green, except those of missing views."""
-    entities = found.laid.space.entities
+    entities = found.space.entities
     return [(str(f.element.number), f.element.view.name, called(f.element), f.what, said_verdict(f.verdict),
-             _found_by([entities[k] for k in f.entities])) for f in worst(found.outcome.findings) if f.element.view not in lost]
+             _found_by([entities[k] for k in f.entities]))
+            for f in worst(found.outcome.findings) if f.element.view not in found.lost]
 
 
 def _extras(outcome: CadOutcome) -> list[tuple[str, ...]]:
@@ -172,49 +183,41 @@ def _looks(found: ExaminedDrawing) -> list[tuple[str, ...]]:
     return rows
 
 
-def report(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> Report:
-    """The report on a drawing of project ``name``: table, JSON, findings, story; ``pencil`` is the tolerance, mm."""
-    laid, places, outcome, p = found.laid, found.places, found.outcome, found.laid.placing
-    lost = sorted(gone(outcome), key=lambda v: v.n)
-    beside = tables_and_texts(outcome) & set(lost)
-    records, start = _records(found, lost, beside, pencil)
-    tolerance = tell("tolerance {tolerance} mm").format(tolerance=told(f"{pencil:g}"))
+def report(name: str, path: Path, found: ExaminedDrawing) -> Report:
+    """The report on a drawing of project ``name``: table, JSON, findings, story."""
+    outcome = found.outcome
+    lost = sorted(found.lost, key=lambda v: v.n)
+    beside = tables_and_texts(outcome) & found.lost
+    records, start = _records(found, lost, beside)
+    tolerance = tell("tolerance {tolerance} mm").format(tolerance=told(f"{found.tolerance:g}"))
     return reported(
-        "cad", name, laid.known.n, path, (tolerance, _summary(found, set(lost), records)), records, start,
-        _mistakes(found, set(lost)), [*_tables(found, set(lost))], _unjudged(found, set(lost)), found.notes,
+        "cad", name, found.sheet, path, (tolerance, _summary(found, records)), records, start, _mistakes(found),
+        [*found.tables, *_tables(found)], _unjudged(found), found.notes,
         [{"kind": x.kind, "length_mm": round(x.length, 3), "at_mm": point(x.at), "where": str(x.entity), "number": k,
           "verdict": x.verdict, "count": x.count, "text": x.text, "entity": x.entity.tree}
          for k, x in enumerate(outcome.extras, 1)],
         {"missing_views": [v.name for v in lost], "missing_tables": [v.name for v in lost if v in beside]},
-        drawing=path.name, space=laid.space.name, tolerance=pencil,
-        placing={"scale": p.scale, "degrees": round(p.degrees, 4), "shift": point(p.shift), "mirrored": p.mirrored,
-                 "share": round(laid.share, 4)},
-        views=[{"view": v.name, "share": round(s, 4), **(
-            {"shift": point(complex(places.moves[v](v.box.centre)) - v.box.centre), "size": round(places.moves[v].scale, 6)}
-            if v in places.moves else {})} for v, s in places.share.items()],
+        drawing=path.name, space=found.space.name, tolerance=found.tolerance, **found.beside,
         not_drawn=[{"view": view.name, "kind": kind, "count": n} for view, kind, n in outcome.absent])
 
 
-def _records(found: ExaminedDrawing, lost: Sequence[ElementView], tables: Container[ElementView],
-             pencil: float) -> tuple[list[FindingRecord], list[FindingRecord]]:
+def _records(found: ExaminedDrawing, lost: Sequence[ElementView],
+             tables: Container[ElementView]) -> tuple[list[FindingRecord], list[FindingRecord]]:
     """What is listed: the mistakes, views that are missing, lines of another type or width, every element; and where it starts."""
-    whole = [FindingRecord(built_otherwise(key), "red", beside={"kind": "mirror", "mistake": key}, whole=True)
-             for key in filter(None, (found.mirrored,))]
-    built = of_built(found.built)
     missing = {v: FindingRecord((codes.TABLE_MISSING(views=v.name) if v in tables else codes.VIEW_MISSING(view=v.name)),
                                 "not-judged", v.name, whole=True) for v in lost}
-    mistakes = [*whole, *built.values(), *missing.values()]
+    mistakes = [*found.whole, *found.of_views.values(), *missing.values()]
     looks = (FindingRecord(look.remark, look.verdict, look.view.name if look.view is not None else "", beside={
         "styles": list(look.styles), "numbers": list(look.elements), "entities": [e.tree for e in look.entities]})
         for look in found.outcome.looks)
     # What a mistake leads on to follows from where that was made first.
-    reasons = {v: r.follows or r for v, r in built.items()}
-    elements = (_record(found, f, missing.get(f.element.view) or (reasons.get(f.element.view) if f.follows else None), pencil)
+    reasons = {v: r.follows or r for v, r in found.of_views.items()}
+    elements = (_record(found, f, missing.get(f.element.view) or (reasons.get(f.element.view) if f.follows else None))
                 for f in found.outcome.findings)
-    return [*mistakes, *looks, *elements], [r for r in mistakes if r.follows is None]
+    return [*mistakes, *looks, *elements], [r for r in mistakes if r.follows is None and r.remark.code != "not-compared"]
 
 
-def _record(found: ExaminedDrawing, f: CadFinding, follows: FindingRecord | None, pencil: float) -> FindingRecord:
+def _record(found: ExaminedDrawing, f: CadFinding, follows: FindingRecord | None) -> FindingRecord:
     """What is listed of an element; of one in a view that is not there, that it is not drawn."""
     e = f.element
     if follows is not None and follows.remark.code in ("view-missing", "table-missing"):
@@ -222,42 +225,45 @@ def _record(found: ExaminedDrawing, f: CadFinding, follows: FindingRecord | None
     own = e.radius if e.kind == "circle" else e.length
     beside = {"missing": True} if f.missing else {}
     return of_element(f, f.verdict or "not-judged", shift=f.shift, turn=None if f.turn is None else radians(f.turn),
-                      growth=f.size / own if f.size is not None and own else None, tolerance=pencil, follows=follows,
-                      beside={**beside, "entities": [found.laid.space.entities[k].tree for k in f.entities]})
+                      growth=f.size / own if f.size is not None and own else None, tolerance=found.tolerance, follows=follows,
+                      beside={**beside, "entities": [found.space.entities[k].tree for k in f.entities]})
 
 
-def _mistakes(found: ExaminedDrawing, lost: set[ElementView]) -> list[ToldMistake]:
-    """What is wrong, view by view: those built on a wrong step first, as they are drawn, then those with the most red."""
-    of_view = {v: bad for v, some in found.outcome.by_view.items() if v not in lost and (bad := worst(some))}
-    built = {v: r for v, r in of_built(found.built).items() if v in of_view}
-    others = sorted(of_view.keys() - built.keys(), key=lambda v: (-sum(f.verdict == "red" for f in of_view[v]), v.n))
-    return [_mistake(found, v, of_view[v], built.get(v)) for v in (*built, *others)]
+def _mistakes(found: ExaminedDrawing) -> list[ToldMistake]:
+    """What is wrong, view by view: those wrong as a whole first, as they are drawn, then those with the most red."""
+    by_view = found.outcome.by_view
+    of_view = {v: bad for v, some in by_view.items() if v not in found.lost and (bad := worst(some))}
+    whole = {v: r for v, r in found.of_views.items() if r.verdict == "red" and (v in of_view or v not in found.lost)}
+    others = sorted(of_view.keys() - whole.keys(), key=lambda v: (-sum(f.verdict == "red" for f in of_view[v]), v.n))
+    return [_mistake(found, v, of_view.get(v, []), whole.get(v)) for v in (*whole, *others)]
 
 
-def _mistake(found: ExaminedDrawing, view: ElementView, bad: Sequence[CadFinding], built: FindingRecord | None) -> ToldMistake:
-    """What is wrong in a view, its picture beside it; ``built`` tells what its plan was built on."""
+def _mistake(found: ExaminedDrawing, view: ElementView, bad: Sequence[CadFinding], whole: FindingRecord | None) -> ToldMistake:
+    """What is wrong in a view, its picture beside it; ``whole`` is what is listed of all of it."""
     after, again = [], ""
     rows = [(f.element.number, f.element, f.what) for f in bad if not f.follows]
-    if built is not None and built.follows is not None:
-        again = tell('the same as in view "{view}": it follows from there').format(view=built.follows.view)
+    if whole is not None and whole.follows is not None:
+        again = tell('the same as in view "{view}": it follows from there').format(view=whole.follows.view)
     if led := [f for f in bad if f.follows and f.element.kind == "line" and f.element.role in ("vector", "link")]:
         told_all = tell("up to {by} mm off, as follows from the mistake: {lines}")
         after = [told_all.format(by=told(millimetres(max(f.deviation for f in led))),
                                  lines=", ".join(dict.fromkeys(f.element.name for f in led)))]
-    return told_view(view, found.built.get(view), bad, rows, _picture(found, view, bad), after, again[:1].upper() + again[1:])
+    return told_view(view, whole, bad, rows, _picture(found, view, bad), after, again[:1].upper() + again[1:])
 
 
 def _picture(found: ExaminedDrawing, view: ElementView, bad: Sequence[CadFinding]) -> StoryPicture | None:
     """The view: ours where the drawing has it, theirs, what is wrong in it."""
-    ours = tuple(p for f, e in zip(found.outcome.findings, found.exact, strict=True) if e.view == view and not f.absent
-                 for p in drawn(e))
+    ours = tuple(p for f, e in zip(found.outcome.findings, found.exact, strict=True)
+                 if e.view == view and f.absent in ("", e.name) for p in drawn(e))
     entities = {k for f in bad for k in f.entities}
     wrong = [s.points for s in found.space.strokes if s.entity in entities]
     # Where a line is missing nothing is drawn wrong: the exact one and its number tell it.
-    wrong += [p for f in bad if view in found.built and not f.missing for p in drawn(f.element)]
+    wrong += [p for f in bad if (view in found.of_views or not f.entities) and not f.missing for p in drawn(f.element)]
+    extras = [x.ends for x in found.outcome.extras if x.view == view]
     lines = [f for f in bad if f.element.kind != "text"]
-    if not lines:
+    if not lines and not extras:
         return None
+    wrong += extras
     size = max(float(np.ptp(z.real) + np.ptp(z.imag)) for z in ours) if ours else 100.0
     places = [(f.at, min(f.reach, max(0.04 * size, 1.5)), str(f.element.number)) for f in lines if not f.follows]
     # What follows from a mistake is called as on the plan: the points where it has dots, else the lines.
@@ -268,20 +274,22 @@ def _picture(found: ExaminedDrawing, view: ElementView, bad: Sequence[CadFinding
     return StoryPicture(ours, clipped([s.points for s in found.space.strokes], box), clipped(wrong, box), tuple(places))
 
 
-def _unjudged(found: ExaminedDrawing, lost: set[ElementView]) -> list[str]:
+def _unjudged(found: ExaminedDrawing) -> list[str]:
     """What could not be judged, and why."""
-    beside = tables_and_texts(found.outcome)
+    beside, lost = tables_and_texts(found.outcome), found.lost
     out = [codes.VIEW_MISSING(view=v.name).said() for v in sorted(lost - beside, key=lambda v: v.n)]
     if tables := sorted(lost & beside, key=lambda v: v.n):
         out.append(codes.TABLE_MISSING(views=", ".join(tell('"{view}"').format(view=v.name) for v in tables)).said())
     by_view: dict[str, list[str]] = {}
     for view, kind, n in found.outcome.absent:
         if view not in lost:
-            by_view.setdefault(view.name, []).append(tell_n(*cad_extras.KINDS[kind], n).format(n=n))
-    out += [tell('view "{view}": not drawn: {what}').format(view=name, what=", ".join(what)) for name, what in by_view.items()]
+            of_kind = cad_extras.KINDS.get(kind)
+            by_view.setdefault(view.name, []).append(kind if of_kind is None else tell_n(*of_kind, n).format(n=n))
+    out += [tell('view "{view}": not drawn: {what}').format(view=name, what=", ".join(what[:SHOWN] + ["…"] * (len(what) > SHOWN)))
+            for name, what in by_view.items()]
     skipped = Counter(f.what for f in found.outcome.findings if f.verdict is None and not f.absent and f.element.view not in lost)
     out += [tell("not compared: {what} ({n})").format(n=n, what=what) for what, n in skipped.items()]
-    extra = len(found.outcome.extras)
+    extra = sum(x.view is None for x in found.outcome.extras)  # in a plan they are told with it
     if extra:
         said = tell_n("{n} line or text that belongs to nothing on the sheet is in the table, but not judged as a mistake",
                       "{n} lines or texts that belong to nothing on the sheet are in the table, but not judged as mistakes", extra)

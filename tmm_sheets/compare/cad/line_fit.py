@@ -310,13 +310,12 @@ def overlaps(ours: KnownLines, theirs: KnownLines, reach: float, steep: float = 
     keep = (np.abs(rise) <= limit * run) & (run > 1e-9)
     i, j, c, run, rise, flip, size = (x[keep] for x in (i, j, c, run, rise, flip, size))
     lo, hi = np.maximum(c.real, 0.0), np.minimum(c.real + run, size)
-    # Where the other line comes nearer than reach.
+    # Where the other line comes nearer than reach; of a parallel one all or nothing.
     k = rise / run
-    level = np.abs(k) < 1e-12
     with np.errstate(divide="ignore", invalid="ignore"):
         t = np.sort(np.stack((c.real + (-reach - c.imag) / k, c.real + (reach - c.imag) / k)), axis=0)
-    lo, hi = np.where(level, lo, np.maximum(lo, t[0])), np.where(level, hi, np.minimum(hi, t[1]))
-    keep = (hi - lo > 1e-6) & (~level | (np.abs(c.imag) <= reach))
+    lo, hi = np.maximum(lo, t[0]), np.minimum(hi, t[1])
+    keep = hi - lo > 1e-6
     i, j, c, run, k, flip, lo, hi = (x[keep] for x in (i, j, c, run, k, flip, lo, hi))
     whole = theirs.length[j]
     w0, w1 = (lo - c.real) / run * whole, (hi - c.real) / run * whole

@@ -13,6 +13,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import itemgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from numpy.typing import NDArray
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity, pointed
 from tmm_sheets.compare.cad.line_fit import MOST, KnownLines, hanging_together, shapes
 from tmm_sheets.compare.elements import grouped
+from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.marks import Points
 
 Floats = NDArray[np.float64]
@@ -50,19 +52,10 @@ LEFT_SHARE = 0.08        # of a stroke that may stay without a line, and of all 
 PASSES_SHARE = 0.9       # what a line whose ends meet no end of ink counts at most
 LONGEST_LINES, LONGEST_STROKES = 12, 40  # laid on each other to find a place
 
-MAIN, OTHERS = "main", "others"
-"""Classes of lines: those that must be there, and those that explain ink and are never missed."""
+MAIN, CENTRES, RESULTANTS, OTHERS = "main", "centres", "resultants", "others"
+"""Classes of lines: those that must be there, may be left out as a whole, and those that explain ink and are never missed."""
 NOT_OF_PLANS = ("DIMENSION", "LEADER", "MULTILEADER", "MLEADER", "HATCH", "ACAD_TABLE", "TOLERANCE")
 UNITS_MM = (1.0, 25.4, 10.0, 1000.0)
-
-
-@dataclass(frozen=True)
-class Lettering:
-    """A text of one entity, its lines joined: where it stands and how it is turned, rad."""
-
-    text: str
-    at: complex
-    angle: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,44 +106,36 @@ class PlanInk:
     ----------
     a, b : ends (n,); ``stroke`` their numbers in the drawing; ``auxiliary`` whether their look is one of construction lines
     heads : tips and directions of arrow heads
-    texts : lettering; ``turn`` how most of it is turned, rad, NaN without any
-    scale : mm per unit of the drawing; ``curves`` number of strokes that are bent and not looked at
+    texts : lettering, the lines of one entity joined; ``turn`` how most of it is turned, rad, NaN without any
+    space : the drawing, mm; ``scale`` mm per unit of it; ``curves`` number of strokes that are bent and not looked at
     look : by stroke the number of its layer, line type and width together
     """
 
     def __init__(self, space: DrawingSpace, unit: float | None, scaled: bool = False) -> None:
         self.scale = 1.0 if scaled else _scale(space, unit)
-        self.texts = _lettering(space, self.scale)
-        self.curves = 0
-        joints: list[tuple[complex, float]] = []
-        ends: list[complex] = []
-        stroke: list[int] = []
-        small: list[Points] = []
-        for n, s in enumerate(space.strokes):
-            z = s.points * self.scale
-            if space.entities[s.entity].kind in NOT_OF_PLANS:
-                continue
-            if _is_bent(z):
-                self.curves += 1
-                joints += _joint(z)
-            elif len(z) > 3 and abs(z[0] - z[-1]) < 0.05 and max(np.ptp(z.real), np.ptp(z.imag)) < MAX_SYMBOL_MM:
-                small.append(z[:-1])
-            else:
-                ends += [x for pair in zip(z[:-1].tolist(), z[1:].tolist(), strict=True) for x in pair]
-                stroke += [n] * (len(z) - 1)
-        s2 = np.array(ends, dtype=complex).reshape(-1, 2)
-        of = np.array(stroke, dtype=np.intp)
+        self.space = space = space.placed(Placing(complex(self.scale)))
+        self.texts = [some[0]._replace(text=" ".join(w.text.strip() for w in some))
+                      for some in grouped(space.writings, lambda w: w.entity).values()]
+        some = {n: s.points for n, s in enumerate(space.strokes) if space.entities[s.entity].kind not in NOT_OF_PLANS}
+        bent = {n for n, z in some.items() if _is_bent(z)}
+        small = {n: z[:-1] for n, z in some.items() if n not in bent and len(z) > 3 and abs(z[0] - z[-1]) < 0.05
+                 and max(np.ptp(z.real), np.ptp(z.imag)) < MAX_SYMBOL_MM}
+        self.curves, joints = len(bent), [joint for n in bent for joint in _joint(some[n])]
+        straight = np.isin(space.lines.owner, list(some.keys() - bent - small.keys()))
+        s2: NDArray[np.complex128] = np.column_stack((space.lines.a, space.lines.b))[straight]
+        of = space.lines.owner[straight]
         keep = _each_once(s2)
         keep = np.sort(keep[np.argsort(-np.abs(s2[keep, 1] - s2[keep, 0]), kind="stable")[:MOST]])
         s2, of = s2[keep], of[keep]
-        filled = [*(a.points * self.scale for a in space.areas if a.solid and space.entities[a.entity].kind not in NOT_OF_PLANS),
-                  *small]
+        filled = [*(a.points for a in space.areas if a.solid and space.entities[a.entity].kind not in NOT_OF_PLANS),
+                  *small.values()]
         heads = [(complex(z.mean()) + far, far / abs(far)) for z in filled
                  if (far := pointed(z)) is not None and abs(far) < MAX_HEAD_MM]
         symbols = _supports(s2)
         s2, of = np.delete(s2, symbols, axis=0), np.delete(of, symbols)
         barbs, more = _open_heads(s2)
-        self.a, self.b, self.stroke = (np.delete(x, barbs) for x in (s2[:, 0], s2[:, 1], of))
+        self.a, self.b = (np.delete(z, barbs) for z in s2.T)
+        self.stroke = np.delete(of, barbs)
         extend(self.a, self.b, heads, joints)
         self.heads: list[tuple[complex, complex]] = heads + more
         turns = Counter(round(float(np.degrees(t.angle)) % 360, 1) for t in self.texts)
@@ -162,12 +147,8 @@ class PlanInk:
 
     def freed(self, mirrored: bool) -> PlanInk:
         """The drawing as if its lettering told no turn; ``mirrored``: reflected in the x axis, its lettering still read."""
-        other = object.__new__(PlanInk)
-        other.__dict__.update(self.__dict__, turn=float("nan"))
-        if mirrored:
-            other.a, other.b = np.conj(self.a), np.conj(self.b)
-            other.heads = [(tip.conjugate(), way.conjugate()) for tip, way in self.heads]
-            other.texts = [Lettering(t.text, t.at.conjugate(), -t.angle) for t in self.texts]
+        other = PlanInk(self.space.placed(Placing(mirrored=mirrored)), 1.0, scaled=True)
+        other.turn = float("nan")
         return other
 
     def figures(self, some: Numbers) -> list[Numbers]:
@@ -201,11 +182,6 @@ class PlanInk:
         z = sample(self.a[some], self.b[some])[0]
         w = np.concatenate((self.a[others], self.b[others], (self.a[others] + self.b[others]) / 2))
         return float(np.abs(z[:, None] - w).min())
-
-
-def _lettering(space: DrawingSpace, scale: float) -> list[Lettering]:
-    return [Lettering(" ".join(w.text.strip() for w in some), some[0].at * scale, some[0].angle)
-            for some in grouped(space.writings, lambda w: w.entity).values()]
 
 
 def _scale(space: DrawingSpace, unit: float | None) -> float:
@@ -257,21 +233,18 @@ def _joint(z: Points) -> list[tuple[complex, float]]:
 
 def extend(a: Points, b: Points, heads: Sequence[tuple[complex, complex]], joints: Sequence[tuple[complex, float]]) -> None:
     """Lengthen strokes in place: to the tip of the head they end under, to the middle of the joint at whose rim they end."""
-    tips = np.array([tip for tip, _ in heads], dtype=complex)
-    ways = np.array([way for _, way in heads], dtype=complex)
-    centres, radii = np.array([c for c, _ in joints], dtype=complex), np.array([r for _, r in joints])
+    tips, ways = (np.array(x, dtype=complex) for x in ([tip for tip, _ in heads], [way for _, way in heads]))
+    centres = np.array([c for c, _ in joints], dtype=complex)
+    radii = np.array([r for _, r in joints])
     for end, other in ((a, b), (b, a)):
-        u = (end - other) / np.maximum(np.abs(end - other), 1e-9)
-        if len(tips):
-            w = (tips - end[:, None]) * np.conj(u)[:, None]
-            under = (w.real > 0.2) & (w.real < MAX_HEAD_MM) & (np.abs(w.imag) < 0.3) & (np.abs(np.angle(ways / u[:, None])) < 0.2)
-            n = np.flatnonzero(under.any(1))
-            end[n] = tips[under[n].argmax(1)]
-        if len(centres):
-            w = (centres - end[:, None]) * np.conj(u)[:, None]
-            rim = (np.abs(w.real - radii) < 0.3) & (np.abs(w.imag) < 0.3)
-            n = np.flatnonzero(rim.any(1))
-            end[n] = centres[rim[n].argmax(1)]
+        u = ((end - other) / np.maximum(np.abs(end - other), 1e-9))[:, None]
+        for at in (tips, centres):
+            w = (at - end[:, None]) * np.conj(u)
+            there = (w.real > 0.2) & (w.real < MAX_HEAD_MM) & (np.abs(np.angle(ways / u)) < 0.2) if at is tips else (
+                np.abs(w.real - radii) < 0.3)
+            there &= np.abs(w.imag) < 0.3
+            n = np.flatnonzero(there.any(1))
+            end[n] = at[there[n].argmax(1)] if len(n) else 0
 
 
 def _supports(s: NDArray[np.complex128]) -> list[int]:
@@ -299,31 +272,23 @@ def _open_heads(s: NDArray[np.complex128]) -> tuple[list[int], list[tuple[comple
     if not len(s):
         return [], []
     d = s[:, 1] - s[:, 0]
-    size = np.abs(d)
-    ends = np.concatenate((s[:, 0], s[:, 1]))
-    away = np.concatenate((d, -d)) / np.concatenate((size, size))
-    of = np.tile(np.arange(len(s)), 2)
+    size, ends = np.tile(np.abs(d), 2), np.concatenate((s[:, 0], s[:, 1]))
+    away, of = np.concatenate((d, -d)) / size, np.tile(np.arange(len(s)), 2)
     used: set[int] = set()
     heads = []
-    first, second = _close(ends, TOLERANCE_MM)
-    begin = np.searchsorted(first, np.arange(len(ends) + 1))
-    for i in np.flatnonzero((size[of] <= MAX_HEAD_MM) & (begin[1:] > begin[:-1])).tolist():
-        if of[i] in used:
-            continue
-        at = np.sort(second[begin[i]:begin[i + 1]])
-        at = at[of[at] != of[i]]
-        alike = np.abs(size[of[at]] - size[of[i]]) < 0.02 * size[of[i]] + TOLERANCE_MM
-        for j in at[alike & (size[of[at]] <= MAX_HEAD_MM)].tolist():
-            if of[j] in used or not 0.08 < abs(np.angle(away[j] / away[i])) / 2 < 0.5:
-                continue
-            middle = away[i] + away[j]
-            middle /= abs(middle)
-            slack = 0.02 + TOLERANCE_MM / 4 / size[of[i]]
-            if any(k != j and of[k] not in used and abs(np.angle(away[k] / middle)) < slack and size[of[k]] > 0.9 * size[of[i]]
-                   for k in at.tolist()):
-                heads.append((complex(ends[i]), complex(-middle)))
-                used |= {int(of[i]), int(of[j])}
-                break
+    i, j = _close(ends, TOLERANCE_MM)
+    beside = grouped(sorted(zip(i.tolist(), j.tolist(), strict=True)), itemgetter(0))
+    half = np.abs(np.angle(away[j] / away[i])) / 2
+    alike = (np.maximum(size[i], size[j]) <= MAX_HEAD_MM) & (np.abs(size[j] - size[i]) < 0.02 * size[i] + TOLERANCE_MM)
+    pairs = np.column_stack((i, j))[alike & (half > 0.08) & (half < 0.5) & (of[i] != of[j])]
+    for p, q in sorted(pairs.tolist()):
+        middle = (away[p] + away[q]) / abs(away[p] + away[q])
+        slack = 0.02 + TOLERANCE_MM / 4 / size[p]
+        if not {of[p], of[q]} & used and any(
+                k != q and of[k] not in {of[p], *used} and abs(np.angle(away[k] / middle)) < slack and size[k] > 0.9 * size[p]
+                for _, k in beside[p]):
+            heads.append((complex(ends[p]), complex(-middle)))
+            used |= {int(of[p]), int(of[q])}
     return sorted(used), heads
 
 

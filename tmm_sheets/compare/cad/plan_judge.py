@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from operator import itemgetter
 from typing import Literal
 
 import numpy as np
@@ -21,7 +22,6 @@ from tmm_sheets.compare.cad.plan_ink import (
     LEFT_SHARE,
     MAIN,
     MAX_GAP_MM,
-    OTHERS,
     TOLERANCE_MM,
     Figure,
     Fit,
@@ -94,7 +94,6 @@ class JudgedView:
     exact, lines, fit : the plan as it should be, as it was built, and where it lies
     strokes : numbers in the ink of what belongs to it; ``unexplained`` those that no line explains
     reversed_heads : numbers of lines; None where no head was read
-    tried : hypotheses that were drawn
     """
 
     title: str
@@ -110,18 +109,11 @@ class JudgedView:
     causes: tuple[Cause, ...] = ()
     both: bool = False
     reversed_heads: list[int] | None = field(default_factory=list)
-    tried: int = 0
 
     @property
     def label(self) -> str:
         """The label of its position, empty for several."""
         return self.view.plan.labels[self.positions[0]] if len(self.positions) == 1 else ""
-
-    @property
-    def absent(self) -> list[int]:
-        """Numbers of the lines that are not drawn, of those that are missed."""
-        return [] if self.fit is None else [i for i in np.flatnonzero(self.fit.drawn < DRAWN_SHARE).tolist()
-                                            if self.lines.kinds[i] != OTHERS]
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,10 +163,8 @@ class _Judge:
     def judged(self) -> tuple[tuple[JudgedView, ...], tuple[Numbers, ...]]:
         """All views, and the figures that are none."""
         whole = self._whole_plans()
-        free = np.ones(len(self.ink.a), bool)
-        for _, _, _, claimed in whole:
-            free[claimed] = False
-        rest = [f for some in self._figures(np.flatnonzero(free)) if (f := Figure.of_drawing(self.ink, some)).ink > MIN_REST_MM
+        free = np.setdiff1d(np.arange(len(self.ink.a)), [n for *_, claimed in whole for n in claimed.tolist()])
+        rest = [f for some in self._figures(free) if (f := Figure.of_drawing(self.ink, some)).ink > MIN_REST_MM
                 and not self.ink.is_frame(some)]
         open_titles = [n for n in range(len(self.titles)) if n not in {w[0] for w in whole}]
         out, used = self._with_mistakes(open_titles, rest)
@@ -203,15 +193,10 @@ class _Judge:
     def _whole_plans(self) -> list[tuple[int, str, tuple[int, ...], Numbers]]:
         """Plans that are there as they should be: number of the title, plan, positions, its strokes."""
         figures = self._figures(np.arange(len(self.ink.a)))
-        offers = []
-        for n, title in enumerate(self.titles):
-            for f, strokes in enumerate(figures):
-                figure = self._figure(strokes, title.kind)
-                if figure.ink < MIN_FIGURE_MM:
-                    continue
-                for name, ks in self.record.choices(title, self.usual):
-                    for some, fit in self._as_it_should_be(figure, name, ks):
-                        offers.append((-(fit.ink - fit.extra) / (1 + 0.005 * figure.away(title.at)), n, f, name, some))
+        offers = [(-(fit.ink - fit.extra) / (1 + 0.005 * figure.away(title.at)), n, f, name, some)
+                  for n, title in enumerate(self.titles) for f, strokes in enumerate(figures)
+                  if (figure := self._figure(strokes, title.kind)).ink >= MIN_FIGURE_MM
+                  for name, ks in self.record.choices(title, self.usual) for some, fit in self._as_it_should_be(figure, name, ks)]
         out: list[tuple[int, str, tuple[int, ...], Numbers]] = []
         free = np.ones(len(self.ink.a), bool)
         for _, n, f, name, ks in sorted(offers, key=lambda x: x[:3]):
@@ -276,14 +261,13 @@ class _Judge:
 
     def _untitled(self, figure: Figure) -> JudgedView | None:
         """A figure without a title as the plan that fits it best as it is."""
-        best: tuple[float, str, tuple[int, ...]] | None = None
-        for name, ks in self.record.everything():
-            fit = self._figure(figure.strokes, name).laid(self.record.view(name).lines(ks), self.ink.turn, 3)
-            if fit is not None and fit.extra < 0.25 * fit.ink and (best is None or fit.price < best[0]):
-                best = fit.price, name, ks
-        if best is None:
+        fits = [(fit.price, name, ks) for name, ks in self.record.everything()
+                if (fit := self._figure(figure.strokes, name).laid(self.record.view(name).lines(ks), self.ink.turn, 3)) is not None
+                and fit.extra < 0.25 * fit.ink]
+        if not fits:
             return None
-        return judge_view(self.record, "", best[1], best[2], self._figure(figure.strokes, best[1]), self.ink.turn)
+        _, name, ks = min(fits, key=itemgetter(0))
+        return judge_view(self.record, "", name, ks, self._figure(figure.strokes, name), self.ink.turn)
 
 
 def judge_view(record: PlanRecord, title: str, name: str, ks: tuple[int, ...], figure: Figure, turn: float,
@@ -301,15 +285,15 @@ def judge_view(record: PlanRecord, title: str, name: str, ks: tuple[int, ...], f
     found = search.best(usual)
     if found is not None:
         return _view(title, name, ks, view, "mistake", exact, found.lines, found.fit, figure, search.alike(found),
-                     len(found.causes) > 1, search.tried)
+                     len(found.causes) > 1)
     unlike = usual is None or usual.extra > UNLIKE * usual.ink
-    return _view(title, name, ks, view, "unlike" if unlike else "partly", exact, exact, usual, figure, tried=search.tried)
+    return _view(title, name, ks, view, "unlike" if unlike else "partly", exact, exact, usual, figure)
 
 
 def _view(title: str, name: str, ks: tuple[int, ...], view: PlanView, kind: Kind, exact: PlanLines, lines: PlanLines,
-          fit: Fit | None, figure: Figure, causes: tuple[Cause, ...] = (), both: bool = False, tried: int = 0) -> JudgedView:
+          fit: Fit | None, figure: Figure, causes: tuple[Cause, ...] = (), both: bool = False) -> JudgedView:
     left = figure.strokes if fit is None else figure.strokes[(fit.left > LEFT_SHARE) & ~figure.soft]
-    return JudgedView(title, name, ks, view, kind, exact, lines, fit, figure.strokes, left, causes, both, tried=tried)
+    return JudgedView(title, name, ks, view, kind, exact, lines, fit, figure.strokes, left, causes, both)
 
 
 @dataclass(frozen=True, eq=False)
@@ -331,7 +315,6 @@ class _MistakeSearch:
         self.before = list(ordered(view.points, lambda s: [x for x in self.errors.arguments(s) if isinstance(x, Step)]))
         here = set(self.before)
         self.known = tuple(cause for cause in known if any(change.step in here for change in cause.changes))
-        self.tried = 0
         self._all: list[_Found] = []
 
     def best(self, usual: Fit | None) -> _Found | None:
@@ -373,7 +356,6 @@ class _MistakeSearch:
     def _cheapest(self, some: Sequence[tuple[Cause, ...]]) -> list[_Found]:
         """Causes that come together, beside those known of plans before, the cheapest first."""
         out = []
-        self.tried += len(some)
         for made in some:
             value = replay(self.errors, [c for one in (*self.known, *made) for c in one.changes])
             try:

@@ -7,25 +7,23 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.compare.cad.plan_ink import MAIN, OTHERS, Lettering, PlanLines
+from tmm_sheets.compare.cad.cad_ink import Writing
+from tmm_sheets.compare.cad.plan_ink import CENTRES, MAIN, OTHERS, RESULTANTS, PlanLines
 from tmm_sheets.compare.diagnosis.hypotheses import BACKWARDS
 from tmm_sheets.compare.elements import said
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.step import Plan, Step, asked_for, value_at
-from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
-CENTRES, RESULTANTS = "centres", "resultants"
-CLASSES = {CENTRES: marked("vectors to centres of mass"), RESULTANTS: marked("resultants")}
-"""Classes of lines that may be left out as a whole, in words."""
 KINEMATICS = ("positions", "velocities", "accelerations")
 TITLES = {"velocities": r"\bскор|\bшвидк|veloc", "accelerations": r"\bуск|\bприск|accel", "force": r"\bсил|\bforce",
           "positions": r"\bполож|\bпозиц|\bмехан|\bсхем|posit|mechan|scheme"}
@@ -46,12 +44,12 @@ class PlanTitle:
     numbers: tuple[str, ...]
 
 
-def titles(texts: Sequence[Lettering]) -> list[PlanTitle]:
+def titles(texts: Sequence[Writing]) -> list[PlanTitle]:
     """The texts that name a plan."""
     return [title for text in texts if 4 < len(text.text) < LONGEST_TITLE and (title := _title(text)) is not None]
 
 
-def _title(text: Lettering) -> PlanTitle | None:
+def _title(text: Writing) -> PlanTitle | None:
     low = text.text.casefold().replace("'", "′")
     found = POSITION.search(low)
     rest = low if found is None else low[: found.start()] + " " + low[found.end():]
@@ -151,12 +149,11 @@ class PlanRecord:
         pairs: dict[frozenset[Step], tuple[Step, Step, str, str]] = {}
         for n, names in enumerate([*of_links, *([p for p in (*g.outer, g.inner) if p] for g in m.groups)]):
             some = [plan[name] for name in dict.fromkeys(names) if name in plan]
-            for i, x in enumerate(some):
-                for y in some[i + 1:]:
-                    both = frozenset((x, y))
-                    if both not in pairs and (np.ndim(x.value) or np.ndim(y.value)):
-                        kind = MAIN if n < len(of_links) and (both in rays or len(some) == 2) else OTHERS
-                        pairs[both] = x, y, kind, letter_of(x) + letter_of(y)
+            for x, y in combinations(some, 2):
+                both = frozenset((x, y))
+                if both not in pairs and (np.ndim(x.value) or np.ndim(y.value)):
+                    kind = MAIN if n < len(of_links) and (both in rays or len(some) == 2) else OTHERS
+                    pairs[both] = x, y, kind, letter_of(x) + letter_of(y)
         guides = [(s.args[2], s.args[3]) for s in plan if s.rule is rules.ARC_LINE and all(isinstance(x, Step) for x in s.args[2:4])
                   and not np.ndim(s.args[3].value)]
         return PlanView(plan, tuple(pairs.values()), tuple(guides))

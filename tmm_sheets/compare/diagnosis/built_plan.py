@@ -21,7 +21,7 @@ from tmm_sheets.compare.cad.plan_ink import DRAWN_SHARE, MIN_DRAWN_MM, Figure
 from tmm_sheets.compare.cad.plan_judge import GAIN, MIN_MOVED_MM, Cause, judge_view
 from tmm_sheets.compare.cad.plan_views import PlanRecord
 from tmm_sheets.compare.codes import Own, Remark, Sentence, joined
-from tmm_sheets.compare.diagnosis.hypotheses import KINDS, TOLD, Hypothesis, any_of, replay
+from tmm_sheets.compare.diagnosis.hypotheses import KINDS, TOLD, replay
 from tmm_sheets.compare.elements import Element, ElementView, KnownSheet, grouped, plans_of
 from tmm_sheets.compare.findings import (
     Finding,
@@ -105,42 +105,26 @@ class DrawnPlan:
         return sorted({p.k for p in self.points if p.label} or {self.k})
 
 
-def drawn_plan(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView) -> DrawnPlan | None:
-    """The plan that a view shows, None where it shows none of vectors."""
-    shown = _lines_of(known, plans, view, "vector")
-    if shown is None or shown.frame.position not in shown.plan.labels:
-        return None
-    on = {path for e in shown.vectors for path in e.on}
-    places = [(step, shown.place(step.value, shown.k)) for step in shown.plan if step.path in on]
-    shown = replace(shown, points=tuple(PlanPoint(step, z, z, shown.k) for step, z in places if np.isfinite(z)))
-    # Forces at the points of a mechanism are no plan: only one end of each is a point.
-    return shown if sum(len(_hung(e, shown.points)) > 1 for e in shown.vectors) > len(shown.vectors) / 2 else None
-
-
-def drawn_positions(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView) -> DrawnPlan | None:
-    """The positions of the mechanism that a view shows, its links for vectors; None where it shows none."""
-    shown = _lines_of(known, plans, view, "link")
-    if shown is None or shown.frame.plan != POSITIONS or shown.frame.position:
-        return None
-    labels, points = {e.position for e in shown.vectors}, []
-    for step in shown.plan:
-        if step.rule.gives == "point":
-            at = [(k, label) for k, label in enumerate(shown.plan.labels) if label in labels] if np.ndim(step.value) else [(0, "")]
-            places = [(shown.place(step.value, k), k, label) for k, label in at]
-            points += [PlanPoint(step, z, z, k, label) for z, k, label in places if np.isfinite(z)]
-    return replace(shown, points=tuple(points))
-
-
-def _lines_of(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView, role: Role) -> DrawnPlan | None:
-    """The plan that all lines of a role in a view are of, still without points; None where they are of several, or of none."""
+def drawn_plan(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView, role: Role = "vector") -> DrawnPlan | None:
+    """The plan that all vectors in a view are of, or the positions of the mechanism that all its links are of; None without."""
     some = [(e, known.sheet.frames[e.by.frame]) for e in known.elements if e.view == view and e.role == role and e.kind == "line"
             and e.by is not None and e.by.frame >= 0]
     frame = some[0][1] if len({frame for _, frame in some}) == 1 else None
     plan = plans.get(frame.plan) if frame is not None else None
-    if frame is None or plan is None:
+    of_links = role == "link"
+    if frame is None or plan is None or frame.position not in (plan.labels if not of_links else [""] * (frame.plan == POSITIONS)):
         return None
-    k = plan.labels.index(frame.position) if frame.position in plan.labels else 0
-    return DrawnPlan(plan, frame, k, tuple(e for e, _ in some), ())
+    shown = DrawnPlan(plan, frame, 0 if of_links else plan.labels.index(frame.position), tuple(e for e, _ in some), ())
+    on, labels = {path for e in shown.vectors for path in e.on}, {e.position for e in shown.vectors}
+    points: list[PlanPoint] = []
+    for step in plan:
+        if step.rule.gives == "point" if of_links else step.path in on:
+            several = of_links and np.ndim(step.value)
+            at = [x for x in enumerate(plan.labels) if x[1] in labels] if several else [(shown.k, "")]
+            points += [PlanPoint(step, z, z, k, label) for k, label in at if np.isfinite(z := shown.place(step.value, k))]
+    # Forces at the points of a mechanism are no plan: only one end of each is a point.
+    hung = sum(len(_hung(e, points)) > 1 for e in shown.vectors)
+    return replace(shown, points=tuple(points)) if of_links or hung > len(shown.vectors) / 2 else None
 
 
 def _hung(e: Element, points: Sequence[PlanPoint]) -> list[PlanPoint]:
@@ -210,40 +194,31 @@ SHOWN = 10
 """Most findings of a view that are told in words beside its picture; the table has all."""
 
 
-@dataclass(frozen=True)
-class BuiltPlan:
-    """A plan that was built on a mistake, and how many of its wrong lines that explains; the point that is off where it is none.
+def mistake_found(view: str, plan: Plan, label: str, causes: Sequence[Cause], both: bool, explains: int, of: int) -> FindingRecord:
+    """What is listed of a plan that was built on a mistake, or two, which explains so many of its wrong lines.
 
-    ``step`` is the one that was done wrong, ``label`` the position of the plan; ``position`` is that label in a plan of several.
-    ``alike`` are mistakes that lead to the very same drawing.
+    ``label`` is that of its position; empty where several are drawn: then the remark has that of the mistake.
     """
-
-    mistake: Hypothesis | Remark
-    explains: int
-    of: int
-    step: Step
-    label: str
-    position: str = ""
-    alike: tuple[Hypothesis, ...] = ()
-
-    @property
-    def remark(self) -> Remark:
-        """What was done wrong, or whatever draws the same."""
-        done = self.mistake if isinstance(self.mistake, Remark) else any_of((self.mistake, *self.alike))
-        return AT_POSITION(mistake=done, position=Own(self.position)) if self.position else done
-
-    def said(self) -> str:
-        """What was done wrong, as the reader reads it."""
-        return self.remark.said()
+    first, *others = causes
+    some = causes if both else [first, *(c for c in others if c.mistake is not None and first.mistake is not None)][:TOLD]
+    done = joined([c.remark for c in some], "; " if both else codes.OR)
+    assert done is not None
+    if (at := first.changes[0].at) is not None:
+        done = done if label else AT_POSITION(mistake=done, position=Own(plan.labels[at]))
+        label = plan.labels[at]
+    h = first.mistake if not both else None
+    beside = {"kind": h.kind, "mistake": h.words} if h is not None else {}
+    return FindingRecord(done, "red", view, first.step.plan, first.step.path, label, whole=True,
+                         beside={**beside, "explains": explains, "of": of})
 
 
-def told_view(view: ElementView, built: BuiltPlan | None, bad: Sequence[Finding], rows: Sequence[tuple[int, Element, str]],
+def told_view(view: ElementView, whole: FindingRecord | None, bad: Sequence[Finding], rows: Sequence[tuple[int, Element, str]],
               picture: StoryPicture | None, after: Sequence[str] = (), again: str = "") -> ToldMistake:
     """What is wrong in a view, its picture beside it.
 
     Parameters
     ----------
-    view, built : the view, and what its plan was built on
+    view, whole : the view, and what is listed of all of it: what its plan was built on, or that it is another one
     bad : what is wrong in it
     rows : number, element and words of each row of the table, the worst first
     picture : what it looks like
@@ -253,29 +228,25 @@ def told_view(view: ElementView, built: BuiltPlan | None, bad: Sequence[Finding]
                for number, e, what in rows[:SHOWN]]
     if len(rows) > SHOWN:
         details.append(tell("and {n} more, in the table").format(n=len(rows) - SHOWN))
-    what = built.said() if built is not None else counted(bad)
-    if built is not None:
-        explained = tell("this explains {n} of {all} wrong lines of the plan").format(n=built.explains, all=built.of)
-        details = [explained, *after, *details]
-    return ToldMistake(view.name, what, "red" if any(f.verdict == "red" for f in bad) else "amber", tuple(details), picture,
-                       named=built is not None, again=again)
+    if built := whole is not None and "explains" in whole.beside:
+        explained = tell("this explains {n} of {all} wrong lines of the plan")
+        details = [explained.format(n=whole.beside["explains"], all=whole.beside["of"]), *after, *details]
+    red = whole is not None or any(f.verdict == "red" for f in bad)
+    return ToldMistake(view.name, counted(bad) if whole is None else whole.remark.said(), "red" if red else "amber",
+                       tuple(details), picture, named=built, again=again)
 
 
-def of_built(built: Mapping[ElementView, BuiltPlan]) -> dict[ElementView, FindingRecord]:
+def of_built(built: Mapping[ElementView, tuple[FindingRecord, Sequence[PlanPoint]]]) -> dict[ElementView, FindingRecord]:
     """What is listed of views that were built on mistakes: what was done in a view before is told there, and follows."""
     first: dict[Remark, FindingRecord] = {}
     out = {}
-    for view, b in built.items():
-        h = b.mistake
-        beside = {"kind": h.kind, "mistake": h.words} if isinstance(h, Hypothesis) else {}
-        record = FindingRecord(b.remark, "red", view.name, b.step.plan, b.step.path, b.label, whole=True,
-                               follows=first.get(b.remark), beside={**beside, "explains": b.explains, "of": b.of})
-        out[view] = record
-        first.setdefault(b.remark, record)
+    for view, (record, _) in built.items():
+        out[view] = replace(record, follows=first.get(record.remark))
+        first.setdefault(record.remark, out[view])
     return out
 
 
-Built = Mapping[ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]
+Built = Mapping[ElementView, tuple[FindingRecord, Sequence[PlanPoint]]]
 """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet."""
 FigureOf = Callable[[DrawnPlan, Placing], Figure | None]
 """The ink that may be a plan, in a drawing in which its view has moved so; None where there is none."""
@@ -300,12 +271,12 @@ def built_otherwise(project: Project, known: KnownSheet, findings: Iterable[Find
         return {}
     plans, errors = errors_of(project, known)
     order, record = list(plans), PlanRecord(project)
-    shown = {view: drawn for view in wrong if (drawn := drawn_plan(known, plans, view) or drawn_positions(known, plans, view))
+    shown = {view: drawn for view in wrong if (drawn := drawn_plan(known, plans, view) or drawn_plan(known, plans, view, "link"))
              is not None and drawn.plan.name in {*record.plans, *record.forces}}
     right = [drawn for view, n in Counter(f.element.view for f in shapes if f.verdict == "green").items()
              if view not in wrong and n > 1 and (drawn := drawn_plan(known, plans, view)) is not None]
 
-    before: dict[Cause, BuiltPlan] = {}
+    before: dict[Cause, tuple[Sequence[Cause], bool, DrawnPlan]] = {}
 
     @cache
     def placed(drawn: DrawnPlan) -> Figure | None:
@@ -354,16 +325,9 @@ def built_otherwise(project: Project, known: KnownSheet, findings: Iterable[Find
         if points := drawn.moved(with_those_before(made)):
             now = np.array([moves.get(view, Placing())(between(by_number[e.number], points)) for e in wrong[view]])
             count = int((figure.drawn(*now.T) >= DRAWN_SHARE).sum()), len(now)
-            built = replace(led_on or _built(causes, judged.both, drawn), explains=count[0], of=count[1])
-            before |= dict.fromkeys((c for c in made if c not in before), built)
-            out[view] = built, points
-    return dict(sorted(out.items(), key=lambda x: order.index(x[1][0].step.plan) if x[1][0].step.plan in order else 0))
+            told, both, where = led_on or (causes, judged.both, drawn)
+            before |= dict.fromkeys((c for c in made if c not in before), (told, both, where))
+            label = where.plan.labels[where.k] if where.frame.position else ""
+            out[view] = mistake_found(view.name, where.plan, label, told, both, *count), points
+    return dict(sorted(out.items(), key=lambda x: order.index(x[1][0].plan) if x[1][0].plan in order else 0))
 
-
-def _built(causes: Sequence[Cause], both: bool, drawn: DrawnPlan) -> BuiltPlan:
-    first, *others = causes[:TOLD]
-    label = drawn.plan.labels[first.changes[0].at] if first.changes[0].at is not None else ""
-    alike = tuple(c.mistake for c in others if c.mistake is not None and not both)
-    said = joined([c.remark for c in causes], "; ") if both else first.mistake or first.remark
-    assert said is not None
-    return BuiltPlan(said, 0, 0, first.step, label or drawn.plan.labels[drawn.k], label * (drawn.plan.name == POSITIONS), alike)

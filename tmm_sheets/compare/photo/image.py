@@ -17,15 +17,14 @@ import numpy as np
 from tmm_sheets import apart
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.plan_ink import COUNTED_MM, Figure, Fit, Floats
-from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.diagnosis import built_plan
 from tmm_sheets.compare.diagnosis.built_plan import (
     Built,
-    BuiltPlan,
     DrawnPlan,
     PlanPoint,
     between,
     led_elsewhere,
+    of_built,
     rebuilt,
     vanished,
 )
@@ -40,7 +39,7 @@ from tmm_sheets.compare.elements import (
     sheet_numbers,
     views as views_of,
 )
-from tmm_sheets.compare.findings import Report, millimetres, verdict
+from tmm_sheets.compare.findings import FindingRecord, Report, millimetres, verdict
 from tmm_sheets.compare.photo import lost_ink, need_opencv, overlay, photograph, placed_views, rectification, small_marks, tracing
 from tmm_sheets.compare.photo.fit_check import MATCH, SIDE, SIDES
 from tmm_sheets.compare.photo.judging import PhotoFinding, judge, tolerance_of
@@ -124,13 +123,13 @@ class _PicturedPlan(Figure):
         return np.array([self._inked(*line) for line in ends], dtype=np.float64)
 
 
-def borne_out(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequence[PhotoFinding]) -> bool:
+def borne_out(built: tuple[FindingRecord, Sequence[PlanPoint]], findings: Sequence[PhotoFinding]) -> bool:
     """Whether a point that is off is what was measured: all lines agree with it, at two points that it moves.
 
     What nothing follows from, and what the lines tell otherwise, they tell better themselves.
     """
-    mistake, points = built[0].mistake, built[1]
-    if not isinstance(mistake, Remark):
+    mistake, points = built
+    if "kind" in mistake.beside:
         return True
     moved = {p.was for p in points if abs(p.now - p.was) > ELSEWHERE}
     led = set()
@@ -142,7 +141,7 @@ def borne_out(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequence[P
     return len(led) > 1
 
 
-def contradicted(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequence[PhotoFinding]) -> bool:
+def contradicted(built: tuple[FindingRecord, Sequence[PlanPoint]], findings: Sequence[PhotoFinding]) -> bool:
     """Whether lines of a plan are seen where they should be that would not be there by the mistake."""
     vectors = [f for f in findings if f.element.role == "vector" and f.element.kind == "line"]
     stay = sum(stays(f, between(f.element, built[1])) for f in vectors)
@@ -261,7 +260,7 @@ class ExaminedPicture:
     found: Rectified
     findings: Sequence[PhotoFinding]
     extra: Sequence[ExtraInk]
-    built: Mapping[ElementView, BuiltPlan]
+    built: Mapping[ElementView, FindingRecord]
     readings: small_marks.Readings | None
     notes: tuple[str, ...]
 
@@ -388,7 +387,7 @@ def examine(
     if reader is not None:
         say(tell("reading the numbers"))
         readings = small_marks.readings(traces, found.ink, reader)
-    return ExaminedPicture(found, findings, extra, {view: plan for view, (plan, _) in built.items()}, readings, notes)
+    return ExaminedPicture(found, findings, extra, of_built(built), readings, notes)
 
 
 def _corrected(picture: Photograph, found: Rectified, known: Sequence[Element]) -> Rectified:

@@ -16,7 +16,7 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built, told_view
+from tmm_sheets.compare.diagnosis.built_plan import told_view
 from tmm_sheets.compare.elements import ElementView, dashed, drawn
 from tmm_sheets.compare.findings import (
     FindingRecord,
@@ -104,7 +104,7 @@ class Judged:
 
 def image_report(
     name: str, n: int, path: Path, found: Rectified, findings: Sequence[PhotoFinding], extra: Sequence[ExtraInk], pencil: float,
-    notes: tuple[str, ...], readings: Readings | None = None, built: Mapping[ElementView, BuiltPlan] = MappingProxyType({}),
+    notes: tuple[str, ...], readings: Readings | None = None, built: Mapping[ElementView, FindingRecord] = MappingProxyType({}),
 ) -> Report:
     """Report of sheet ``n`` of the project ``name`` compared with the picture at ``path``: the table, the tree and the overlays.
 
@@ -208,9 +208,8 @@ def _rows(judged: Judged) -> list[tuple[str, ...]]:
     return out
 
 
-def recorded(judged: Judged, built: Mapping[ElementView, BuiltPlan]) -> tuple[list[FindingRecord], list[FindingRecord]]:
+def recorded(judged: Judged, mistakes: Mapping[ElementView, FindingRecord]) -> tuple[list[FindingRecord], list[FindingRecord]]:
     """What is listed: plans that were built on mistakes, the elements; and where it starts."""
-    mistakes = of_built(built)
     told = ("measured", "shared", "beside", "covered", "missing", "dense", "part of lettering", "absent lettering", "hidden",
             "eaten")
     elements = [_record(f, judged.number.get(f.element.number), mistakes.get(f.element.view) if f.follows else None)
@@ -273,7 +272,7 @@ PIXELS = 860.0
 
 
 def mistakes(found: Rectified, findings: Iterable[PhotoFinding], places: Iterable[FindingCluster],
-             built: Mapping[ElementView, BuiltPlan]) -> tuple[ToldMistake, ...]:
+             built: Mapping[ElementView, FindingRecord]) -> tuple[ToldMistake, ...]:
     """What is off: views that were built on a mistake first, then those that have the most red; ink alone is left to the table."""
     of_view: dict[ElementView, list[FindingCluster]] = {}
     for p in places:
@@ -287,7 +286,7 @@ def mistakes(found: Rectified, findings: Iterable[PhotoFinding], places: Iterabl
 
 
 def _mistake(found: Rectified, view: ElementView, places: Sequence[FindingCluster], exact: Sequence[Any],
-             built: BuiltPlan | None) -> ToldMistake:
+             built: FindingRecord | None) -> ToldMistake:
     # What is doubtful at a place that is wrong is no other place to look at.
     bad = [f for p in places for k, f in enumerate(p.findings) if f.verdict == "red" or k == 0]
     wrong = tuple(line for p in places for line in shown(p))
