@@ -198,7 +198,7 @@ def projects(context: click.Context, incomplete: str) -> Items:
 
 
 def plots(context: click.Context, incomplete: str) -> Items:
-    """The same, and files that are ready to be plotted."""
+    """Projects, and files that are ready to be plotted."""
     from tmm_sheets.output import plot
 
     return projects(context, incomplete) + _paths(incomplete, plot.FILES, folders=False)
@@ -300,7 +300,7 @@ def varied(context: click.Context, incomplete: str) -> Items:
 
 
 def wished(context: click.Context, incomplete: str) -> Items:
-    """The same as :func:`results` for the last word of a wish."""
+    """Results, as of :func:`results`, for the last word of a wish."""
     before, sign, last = incomplete.rpartition(next((c for c in reversed(incomplete) if c in " |(,-+*/"), " "))
     return [CompletionItem(f"{before}{sign}{item.value}", item.type, item.help) for item in results(context, last)]
 

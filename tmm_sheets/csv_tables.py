@@ -102,7 +102,7 @@ def _of_workbook(data: bytes, file: str) -> str:
                 raise ValueError(tell("too large"))
             book = openpyxl.load_workbook(io.BytesIO(data), read_only=True, data_only=True)
             csv.writer(out, delimiter=";", lineterminator="\n").writerows(
-                [_told(cell) for cell in row]
+                [_as_typed(cell) for cell in row]
                 for row in book.worksheets[0].iter_rows(max_row=ROWS, max_col=COLUMNS, values_only=True))
     except Exception as e:  # whatever is wrong in a file that somebody else's program wrote
         raise BadInput(Problem(tell("cannot be read as a workbook: {why}").format(why=e), file,
@@ -110,7 +110,7 @@ def _of_workbook(data: bytes, file: str) -> str:
     return encodings.cleaned(out.getvalue())
 
 
-def _told(value: Any) -> str:
+def _as_typed(value: Any) -> str:
     """A cell as it was typed: 3 for 3.0, and the variant 3:2, which a program takes for a time of the day."""
     if isinstance(value, time):
         return f"{value.hour}:{value.minute}"

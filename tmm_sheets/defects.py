@@ -69,7 +69,7 @@ def least(data: bytes, name: str, again: Again, place: tuple[str, str, int]) -> 
         child = os.fork() if hasattr(os, "fork") else None
         if child == 0:
             try:
-                _lessen(found, Path(folder) / f"tried-{name}", again, place)
+                _reduce(found, Path(folder) / f"tried-{name}", again, place)
             finally:
                 os._exit(0)
         if child is not None:
@@ -77,7 +77,7 @@ def least(data: bytes, name: str, again: Again, place: tuple[str, str, int]) -> 
         return found.read_bytes()
 
 
-def _lessen(found: Path, tried: Path, again: Again, place: tuple[str, str, int]) -> None:
+def _reduce(found: Path, tried: Path, again: Again, place: tuple[str, str, int]) -> None:
     """Leave out halves, quarters .. single lines, the last ones first, as long as the work ends in the same error without them."""
     import resource
     import signal

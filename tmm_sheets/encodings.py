@@ -86,7 +86,7 @@ def _redirected(text: str) -> str | None:
 
 
 def cleaned(text: str) -> str:
-    """The same with composed letters (NFC), every kind of space as a plain one, and no signs without width."""
+    """A text with composed letters (NFC), every kind of space as a plain one, and no signs without width."""
     return text if text.isascii() else normalize("NFC", text).translate(_PLAIN)
 
 

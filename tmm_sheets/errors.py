@@ -64,7 +64,7 @@ class Problem:
 
     def __post_init__(self) -> None:
         for name, most in LONGEST.items():
-            object.__setattr__(self, name, _shortened(getattr(self, name), most))
+            object.__setattr__(self, name, _without_middle(getattr(self, name), most))
 
     def __str__(self) -> str:
         place = self.file + (f":{self.line}" if self.line is not None else "")
@@ -72,7 +72,7 @@ class Problem:
         return f"{text}\n    {self.hint}" if self.hint else text
 
 
-def _shortened(text: str, most: int) -> str:
+def _without_middle(text: str, most: int) -> str:
     """A text without the middle of what is too long to be read: a value that a program wrote is not told whole."""
     text = re.sub(r"\S{200,}", lambda long: f"{long[0][:100]} … {long[0][-50:]}", text)
     return f"{text[:most // 2]} … {text[-most // 4:]}" if len(text) > most else text

@@ -236,7 +236,7 @@ def sweep(path: Path) -> None:
             if name is not None and int(name[1]) != os.getpid():
                 with suppress(OSError):
                     here = name[2] in (None, _host())
-                    if (here and not _alive(int(name[1]))) or time() - part.stat().st_mtime > LONG:
+                    if (here and not _is_running(int(name[1]))) or time() - part.stat().st_mtime > LONG:
                         part.unlink()
 
 
@@ -245,7 +245,7 @@ def _host() -> str:
     return "@" + re.sub(r"[^\w-]", "-", platform.node())
 
 
-def _alive(process: int) -> bool:
+def _is_running(process: int) -> bool:
     """Whether there is such a process; taken for granted where asking would end it."""
     if os.name == "nt":
         return True

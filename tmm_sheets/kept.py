@@ -47,7 +47,7 @@ def unused() -> AbstractContextManager[None]:
 
 
 def forgo() -> None:
-    """The same from here on: for a command that was told so."""
+    """Read and write nothing there from here on: for a command that was told so."""
     _used.set(False)
 
 

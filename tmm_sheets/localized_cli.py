@@ -57,7 +57,7 @@ def _click_speaks(language: str) -> Iterator[None]:
 
 
 @contextmanager
-def _said(spoken: Any) -> Iterator[None]:
+def _in_reader_language(spoken: Any) -> Iterator[None]:
     """Help of a command or an option in the reader's language meanwhile."""
     kept = spoken.help
     if kept:
@@ -88,7 +88,7 @@ class Option(_Offered, click.Option):
 
     def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
         """Name and help."""
-        with _said(self):
+        with _in_reader_language(self):
             return super().get_help_record(ctx)
 
 
@@ -104,7 +104,7 @@ class Command(click.Command):
 
     def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """The text above the options."""
-        with _said(self):
+        with _in_reader_language(self):
             super().format_help_text(ctx, formatter)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem[str]]:
@@ -116,7 +116,7 @@ class Command(click.Command):
 
     def get_short_help_str(self, limit: int = 45) -> str:
         """First sentence, for the list of commands."""
-        with _said(self):
+        with _in_reader_language(self):
             return super().get_short_help_str(limit)
 
 
@@ -150,7 +150,7 @@ def _lang() -> Option:
     return Option(["--lang"], type=click.Choice(LANGUAGES), expose_value=False, help=_LANG)
 
 
-def _telling(kind: type[click.Parameter], *names: str, **settings: Any) -> _Decorator:
+def _described_parameter(kind: type[click.Parameter], *names: str, **settings: Any) -> _Decorator:
     """As click's own decorators, but the parameter is only told: it is made when its command is asked for."""
 
     def tell_it(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -160,7 +160,7 @@ def _telling(kind: type[click.Parameter], *names: str, **settings: Any) -> _Deco
     return tell_it
 
 
-option = partial(_telling, Option)
+option = partial(_described_parameter, Option)
 """Decorator of commands: an option with help in the reader's language."""
-argument = partial(_telling, LocalizedArgument)
+argument = partial(_described_parameter, LocalizedArgument)
 """Decorator of commands: an argument."""

@@ -67,7 +67,7 @@ def number(x: float, digits: int = 4, kind: float = 0.0) -> str:
 
 
 def rounded(x: float, digits: int = 4, kind: float = 0.0) -> str:
-    """The same with the signs of a computer's number, for :func:`told`."""
+    """A number as on paper, but with the signs of a computer's number, for :func:`told`."""
     if is_zero(x, kind):
         return "0"
     text = _half_up(float(x), max(digits - 1 - floor(log10(abs(x))), 0))

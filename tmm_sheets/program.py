@@ -70,17 +70,17 @@ def source_fingerprints() -> tuple[str, str]:
 def _files() -> list[os.DirEntry[str]]:
     """Sources, and templates, in a fixed order."""
     inside = str(template(""))
-    sources = [entry for entry in _walk(str(Path(__file__).parent)) if entry.path.endswith(".py")]
+    sources = [entry for entry in _source_files(str(Path(__file__).parent)) if entry.path.endswith(".py")]
     own = [entry for entry in sources if not entry.path.startswith(inside)]
-    return [entry for some in (own, _walk(inside)) for entry in sorted(some, key=attrgetter("path"))]
+    return [entry for some in (own, _source_files(inside)) for entry in sorted(some, key=attrgetter("path"))]
 
 
-def _walk(folder: str) -> Iterator[os.DirEntry[str]]:
+def _source_files(folder: str) -> Iterator[os.DirEntry[str]]:
     """The files below a folder that may be sources or templates."""
     with os.scandir(folder) as entries:
         for entry in entries:
             if entry.is_dir():
                 if entry.name != "__pycache__":
-                    yield from _walk(entry.path)
+                    yield from _source_files(entry.path)
             else:
                 yield entry

@@ -46,7 +46,7 @@ class Progress:
             self._show()
 
     def doing(self, what: str) -> None:
-        """The same with points behind it: work that goes on."""
+        """Tell, with points behind it, what work goes on."""
         self.say(f"{what} ...")
 
     def _show(self) -> None:
@@ -71,7 +71,7 @@ class Progress:
 
 
 class Bar(Progress):
-    """The same for many pieces of work: a bar with how many are done, how many a second, and the time left."""
+    """Progress of many pieces of work: a bar with how many are done, how many a second, and the time left."""
 
     def __init__(self, total: int) -> None:
         super().__init__()

@@ -57,7 +57,7 @@ class Project:
         return self.variant.sheets
 
     def on_sheets(self, names: Sequence[str]) -> Project:
-        """The same project on sheets of these arrangements: what it has found stays found."""
+        """The project on sheets of these arrangements: what it has found stays found."""
         other, v = copy(self), self.variant
         other.variant = v.model_copy(update={"project": v.project.model_copy(update={"sheets": list(names)})})
         other.shown, other.arranged = set(), {}

@@ -41,7 +41,7 @@ def lines(project: Project, name: str | None, everything: bool = False) -> Itera
     for i, (plan, scale) in enumerate(found.values()):
         if i:
             yield ""
-        yield from _told(project, plan, scale)
+        yield from _plan_sentences(project, plan, scale)
     if name is None and problem is not None:
         raise problem
 
@@ -106,7 +106,7 @@ def _construct(project: Project, problem: CannotBuild) -> None:
         raise problem
 
 
-def _told(project: Project, plan: Plan, scale: Scale | None) -> Iterator[str]:
+def _plan_sentences(project: Project, plan: Plan, scale: Scale | None) -> Iterator[str]:
     from tmm_sheets.construction.protocol import sentences
 
     k = _position(project, plan)

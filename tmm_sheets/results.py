@@ -75,11 +75,11 @@ def told(
         _put_linkage(project, tree, linkage, _study(project, phi, positions, linkage, lost), lost)
     plans = set(linkage or project.parts) & set(LINKAGE) - {"forces", *lost}
     if plans and (parts is None or "scales" in asked):  # a sheet is arranged for them
-        with _losing(lost, "scales"):
+        with _noting_losses(lost, "scales"):
             scales |= _drawn_scales(project, plans, by_angle=phi is not None or positions is not None)
     for name in ("flywheel", "gear", "reducer", "train", "cam"):
         if name in asked:
-            with _losing(lost, name):
+            with _noting_losses(lost, name):
                 tree[name] = _flywheel(project, scales) if name == "flywheel" else getattr(project, name).results()
     if scales:
         tree["scales"] = scales
@@ -105,7 +105,7 @@ def _asked(project: Project, parts: Iterable[str] | None) -> tuple[str, ...]:
 
 
 @contextmanager
-def _losing(lost: dict[str, CannotBuild], *parts: str) -> Iterator[None]:
+def _noting_losses(lost: dict[str, CannotBuild], *parts: str) -> Iterator[None]:
     """Note that parts cannot be computed, and go on with the others."""
     try:
         yield
@@ -128,11 +128,11 @@ def _put_linkage(project: Project, tree: dict[str, Any], asked: list[str], found
         **({} if study.mechanism.drive is None else {"input": Reported(study.place_of_input)}),
     }
     for name in asked:
-        with _losing(lost, name):
+        with _noting_losses(lost, name):
             tree[name] = _section(project, study, name, chosen)
     there = [name for name in asked if name not in lost]
     if len(study.labels) > MANY:
-        _at_once(study, tree, there)
+        _evaluate_together(study, tree, there)
     tree["condition"] = _condition(study, there, chosen)
 
 
@@ -140,7 +140,7 @@ MANY = 4096
 """Positions from which on all is computed by one function, and nothing but what is told is kept."""
 
 
-def _at_once(study: Study, tree: dict[str, Any], asked: list[str]) -> None:
+def _evaluate_together(study: Study, tree: dict[str, Any], asked: list[str]) -> None:
     """Evaluate what is told, and the condition of its plans, by one function; a rule without a formula is left to its step."""
     from tmm_sheets.construction import condition, function
     parts = {key: tree[key] for key in ("cycle", *asked)}
@@ -320,7 +320,7 @@ def _study(project: Project, phi: tuple[float, ...] | None, positions: int | Non
     """Linkage at the angles asked for, and the positions the forces are told for; None when it does not assemble."""
     import numpy as np
 
-    with _losing(lost, *asked):
+    with _noting_losses(lost, *asked):
         if phi is None and positions is None:
             return project.study, [project.force_index]
         cycle = project.cycle

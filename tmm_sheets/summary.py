@@ -46,7 +46,7 @@ def text(variant: Variant, names: Names) -> str:
         from tmm_sheets.task.assembly import mechanism_of
 
         m = mechanism_of(variant)
-        lines += [*_structure(m), *(_ways(variant, g) for g in m.groups if g.kind.grade == 3)]
+        lines += [*_structure(m), *(_assemblies_in_words(variant, g) for g in m.groups if g.kind.grade == 3)]
     return "\n".join(lines)
 
 
@@ -138,7 +138,7 @@ def _structure(m: Mechanism) -> Iterator[str]:
     yield "\n" + tell("Formula of structure: {formula}").format(formula=m.structure)
 
 
-def _ways(variant: Variant, g: Any) -> str:
+def _assemblies_in_words(variant: Variant, g: Any) -> str:
     """The ways in which a group of class III can be put together, and which one is taken."""
     from tmm_sheets.project import Project
 

@@ -23,10 +23,10 @@ _PICTURES, _DELETED, _STRANGE = 0x2400, "\u2421", "\ufffd"
 
 def shown(text: str) -> str:
     """A text with its control letters to be seen."""
-    return _CONTROL.sub(lambda match: _seen(ord(match[0])), text)
+    return _CONTROL.sub(lambda match: _visible(ord(match[0])), text)
 
 
-def _seen(code: int) -> str:
+def _visible(code: int) -> str:
     return chr(_PICTURES + code) if code < 32 else _DELETED if code == 0x7F else _STRANGE
 
 

@@ -150,7 +150,7 @@ def marked(text: str) -> str:
 
 
 def marked_n(one: str, many: str) -> tuple[str, str]:
-    """The same of a text with a number: its forms."""
+    """The forms of a text with a number, marked for the catalogues."""
     return one, many
 
 
@@ -161,7 +161,7 @@ def tr(text: str) -> str:
 
 
 def tr_in(context: str, text: str) -> str:
-    """The same of a text that other languages say differently elsewhere; ``context`` tells the translator where it stands."""
+    """The text on the paper, where other languages say it differently elsewhere; ``context`` tells the translator where it stands."""
     return _text(_catalogue(_paper.get()).pgettext(context, text), _paper.get())
 
 

@@ -99,10 +99,10 @@ def prepare(project: str, path: Path) -> int:
     from tmm_sheets.drawing.styles import layers, line_type
     from tmm_sheets.project import Project
     from tmm_sheets.resources import template
-    from tmm_sheets.sheets.sheet import compose
+    from tmm_sheets.sheets.sheet import composed
 
     opened = Project(catalogue.read(project))
-    sheets = [_plain(compose(opened, n)) for n in range(1, len(opened.sheets) + 1)]
+    sheets = [_plain(composed(opened, n).drawing) for n in range(1, len(opened.sheets) + 1)]
     from tmm_sheets.backends.dxf import weight
 
     styles = {}

@@ -30,7 +30,13 @@ def modules():
             yield importlib.import_module(info.name)
 
 
-RULES = list({id(v): v for m in modules() for v in vars(m).values() if isinstance(v, Rule)}.values())
+def rules_of(value):
+    """A rule, or those of a table of steps."""
+    return [v for row in value.values() for v in row if isinstance(v, Rule)] if isinstance(value, dict) and all(
+        isinstance(row, tuple) for row in value.values()) else [value] if isinstance(value, Rule) else []
+
+
+RULES = list({id(rule): rule for m in modules() for v in vars(m).values() for rule in rules_of(v)}.values())
 
 
 def operations(tree):

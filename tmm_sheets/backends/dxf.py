@@ -67,7 +67,7 @@ class LiveSheet:
         self.found = defaultdict[int, list[int]](list)  # handles in model space by the first mark they stand for
         self.entities: dict[int, str] = {}  # by their handles
         # Two lines make no angle of more than half a turn, and LibreCAD knows no other dimensions of angles.
-        dimensions = [d for d in drawing.dimensions if (d.kind != "angle" or _turned(d) < pi) and (style == COMMON or _along(d))]
+        dimensions = [d for d in drawing.dimensions if (d.kind != "angle" or _turned(d) < pi) and (style == COMMON or _stays_in_librecad(d))]
         wholes: dict[int, Form | Dimension] = {d.first: d for d in dimensions} | {form.first: form for form in drawing.forms}
         lettered = {k for d in dimensions for k in range(*d.label)}
         i = 0
@@ -109,7 +109,7 @@ class LiveSheet:
 
     def _text(self, mark: Text, owner: str, on: str, more: str = "") -> Iterator[tuple[int, str]]:
         """A run of letters as TEXT; letters missing from the font of the style are drawn."""
-        for part in (_in_common(mark.text) if self.style == COMMON else WHOLE).finditer(mark.text):
+        for part in (_missing_from_common_font(mark.text) if self.style == COMMON else WHOLE).finditer(mark.text):
             run = mark if part[0] == mark.text else mark._replace(
                 at=mark.at + _direction(mark.angle) * advance(mark.text[: part.start()], mark.height) * mark.wide, text=part[0])
             handle = next(self.handles)
@@ -209,7 +209,7 @@ def letters_in_common() -> frozenset[str]:
     return frozenset([BAR, *(chr(int(code, 16)) for code in re.findall(r"^\[#?([0-9a-fA-F]+)\]", text, re.M))])
 
 
-def _in_common(text: str) -> re.Pattern[str]:
+def _missing_from_common_font(text: str) -> re.Pattern[str]:
     """Pattern of the runs of a text; each letter missing from the common font is a run "drawn"."""
     lacking = "".join([re.escape(c) for c in {*text} - letters_in_common() if not c.isspace()])
     return re.compile(rf"(?P<drawn>[{lacking}])|[^\s{lacking}](?:[^{lacking}]*[^\s{lacking}])?") if lacking else WHOLE
@@ -224,7 +224,7 @@ def _direction(angle: float) -> complex:
     return complex(cos(angle), sin(angle))
 
 
-def _along(d: Dimension) -> bool:
+def _stays_in_librecad(d: Dimension) -> bool:
     """True if LibreCAD, which redraws dimensions, leaves the lettering in place: it sets it along the line or on the arc.
 
     In a drawing for LibreCAD the other dimensions are lines and letters.

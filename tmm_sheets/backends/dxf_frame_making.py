@@ -61,16 +61,16 @@ def _written(doc: Document) -> DxfFrame:
     text = re.sub(r"(?<=\$HANDSEED\n  5\n)[0-9A-F]+", HANDSEED, text, count=1)
     text = re.sub(r"  9\n\$EXTMIN\n.*?(?=  9\n\$LIMMIN\n)", EXTENTS, text, count=1, flags=re.S)
     for table, sign in (("VIEW", VIEWS), ("BLOCK_RECORD", RECORDS)):
-        text = _before(text, f"  0\nTABLE\n  2\n{table}\n", "  0\nENDTAB\n", sign)
-    text = _before(text, "  2\nBLOCKS\n", "  0\nENDSEC\n", BLOCKS)
-    text = _before(text, "  2\nENTITIES\n", "  0\nENDSEC\n", BODY)
-    text = _before(text, f"  0\nDICTIONARY\n  5\n{groups}\n", "  0\n", GROUPED, skip=1)
-    text = _before(text, "  2\nOBJECTS\n", "  0\nENDSEC\n", GROUPS)
+        text = _with_placeholder(text, f"  0\nTABLE\n  2\n{table}\n", "  0\nENDTAB\n", sign)
+    text = _with_placeholder(text, "  2\nBLOCKS\n", "  0\nENDSEC\n", BLOCKS)
+    text = _with_placeholder(text, "  2\nENTITIES\n", "  0\nENDSEC\n", BODY)
+    text = _with_placeholder(text, f"  0\nDICTIONARY\n  5\n{groups}\n", "  0\n", GROUPED, skip=1)
+    text = _with_placeholder(text, "  2\nOBJECTS\n", "  0\nENDSEC\n", GROUPS)
     return DxfFrame(text, entry, doc.modelspace().layout_key, str(doc.views.head.dxf.handle),
                     str(doc.block_records.head.dxf.handle), groups, int(str(doc.entitydb.handles), 16))
 
 
-def _before(text: str, start: str, end: str, sign: str, skip: int = 0) -> str:
+def _with_placeholder(text: str, start: str, end: str, sign: str, skip: int = 0) -> str:
     """The text with a placeholder before the first ``end`` after ``start`` (and ``skip`` characters)."""
     at = text.index(end, text.index(start) + skip)
     return f"{text[:at]}{sign}{text[at:]}"

@@ -71,7 +71,7 @@ def plotter(context: click.Context, parameter: click.Parameter, value: str | Non
         raise click.BadParameter(str(e)) from None
 
 
-def _forgo(context: click.Context, parameter: click.Parameter, value: bool) -> None:
+def _without_kept_drawings(context: click.Context, parameter: click.Parameter, value: bool) -> None:
     if value:
         kept.forgo()
 
@@ -118,7 +118,7 @@ SHEETS = option("--sheet", "sheets", type=int, multiple=True, metavar="N", help=
 JOBS = option("--jobs", type=click.IntRange(1), metavar="N", help="Processes for several projects.  [default: all processors]")
 DASK = option("--dask", "scheduler", metavar="ADDRESS", help="Build several projects on a dask cluster.")
 REMAKE = option("--force", is_flag=True, help="Make again also what has not changed, and overwrite what was changed by hand.")
-NO_CACHE = option("--no-cache", is_flag=True, expose_value=False, callback=_forgo,
+NO_CACHE = option("--no-cache", is_flag=True, expose_value=False, callback=_without_kept_drawings,
                   help="Draw every sheet anew, without the drawings kept of earlier times.")  # fmt: skip
 CORRECTED = option("--corrected", is_flag=True, help="With the suggested values instead of suspected misprints.")
 

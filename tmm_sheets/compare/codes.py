@@ -95,7 +95,7 @@ class Remark:
 
     @property
     def alike(self) -> Remark:
-        """The same whoever made the mistake: without what is the student's own."""
+        """The remark without the student's own numbers, alike for all who made the mistake."""
         fields = tuple((name, value.alike if isinstance(value, Remark) else LEFT_OUT if isinstance(value, Own) else value)
                        for name, value in self.fields)
         return Remark(self.code, self.text, fields,

@@ -175,7 +175,7 @@ def elements(sheet: Composed) -> tuple[Element, ...]:
         if e.kind == "text" and not e.view.n and any(cell.contains(e.middle) for cell in own):
             continue
         by = next((m.by for m in e.marks if m.by is not None and (m.by.step or m.by.name)), e.marks[0].by)
-        out.append(replace(e, name=e.name or _called(by, sheet), by=by))
+        out.append(replace(e, name=e.name or _step_name(by, sheet), by=by))
     return tuple(out)
 
 
@@ -333,7 +333,7 @@ def _around(texts: list[Text]) -> Points:
     return np.asarray(u * np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)]))
 
 
-def _called(by: Provenance | None, sheet: Composed) -> str:
+def _step_name(by: Provenance | None, sheet: Composed) -> str:
     """Name of what a step has left, with the position where its place is that of several; empty without a step."""
     if by is None or not (by.step or by.name):
         return ""

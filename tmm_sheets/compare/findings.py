@@ -208,7 +208,7 @@ class FindingRecord:
 
     @property
     def alike(self) -> tuple[object, ...]:
-        """The same for the same mistake of another student."""
+        """What this mistake and that of another student have in common."""
         if self.remark.code in OF_STEP and self.step:
             return self.remark.code, self.step, self.beside.get("mistake")
         return self.remark.code, self.view if self.where is None else "", self.told.alike

@@ -232,9 +232,9 @@ def compare(folder: Path, project: str, opened: Callable[[str], Project], judged
         files = []
         for path in paths:
             say(f"{name}: {path.name}")
-            files.append(_judged(path, _within(folder, path), own, project_of, judged))
+            files.append(_judged_file(path, _relative_name(folder, path), own, project_of, judged))
         count = len(project_of(own).variant.sheets) if any(f.report is not None for f in files) else 0
-        students.append(Student(name, own, tuple(files), count, tuple(_within(folder, path) for path in made_files)))
+        students.append(Student(name, own, tuple(files), count, tuple(_relative_name(folder, path) for path in made_files)))
     return _report(folder, students, scheme)
 
 
@@ -317,13 +317,13 @@ def _seen_from(folder: Path, project: str) -> str:
     return project
 
 
-def _within(folder: Path, path: Path) -> str:
+def _relative_name(folder: Path, path: Path) -> str:
     """A file's name as it is told: with its folders below the student's."""
     inside = path.relative_to(folder).parts
     return "/".join(inside[1:] or inside)
 
 
-def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project], judge: Judge) -> Judgement:
+def _judged_file(path: Path, file: str, name: str, opened: Callable[[str], Project], judge: Judge) -> Judgement:
     """One file; what cannot be judged is told, and the rest goes on."""
     try:
         project = opened(name)
@@ -400,7 +400,7 @@ def _tables(students: Sequence[Student], scheme: MarkingScheme | None) -> Iterat
     if made:
         yield StoryTable(tell("Mistakes of each"), (tell("student"), tell("mistake")), tuple(made))
         yield StoryTable(tell("Mistakes most made"), (tell("students"), tell("mistake")),
-                         tuple((str(n), m) for m, n in _most_made(students)[:MOST]))
+                         tuple((str(n), m) for m, n in _commonest_mistakes(students)[:MOST]))
 
 
 def _marks(students: Sequence[Student], scheme: MarkingScheme) -> StoryTable:
@@ -418,7 +418,7 @@ def called_kinds() -> tuple[str, ...]:
             tell("not judged"), tell("numbers left empty, %"), tell("sheets missing"))
 
 
-def _most_made(students: Sequence[Student]) -> list[tuple[str, int]]:
+def _commonest_mistakes(students: Sequence[Student]) -> list[tuple[str, int]]:
     """Mistakes by how many students made them; sizes, which are everybody's own, do not tell them apart."""
     every = [m for s in students for m in {m.alike: m for f in s.files for m in f.mistakes}.values()]
     made = sorted(grouped(every, lambda m: m.alike).values(), key=len, reverse=True)
@@ -447,6 +447,6 @@ def _tree(students: Sequence[Student], scheme: MarkingScheme | None) -> dict[str
                       "mistakes": list(s.mistakes), "made": list(s.made), **marked(s),
                       "files": [{"file": f.file, "faults": dict(f.faults), "mistakes": [m.told.said() for m in f.mistakes],
                                  "refused": f.refused or None} for f in s.files]} for s in students],
-        "most_made": [{"mistake": m, "students": n} for m, n in _most_made(students)],
+        "most_made": [{"mistake": m, "students": n} for m, n in _commonest_mistakes(students)],
     }
 

@@ -69,7 +69,7 @@ def _wrong_looks(looks: Sequence[tuple[Sequence[Points], str]]) -> list[Mark]:
     for places, number in looks:
         for z in places:
             canvas.polyline(z, "vector")
-        canvas.text(_beside(places[0]), number, 3.5)
+        canvas.text(_beside_middle(places[0]), number, 3.5)
     return canvas.marks
 
 
@@ -84,7 +84,7 @@ def _marked(found: Sequence[tuple[complex, float, str, str]]) -> list[Mark]:
     return canvas.marks
 
 
-def _beside(z: Points) -> complex:
+def _beside_middle(z: Points) -> complex:
     """A place beside the middle of a line."""
     run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(z)))))
     k = min(int(np.searchsorted(run, run[-1] / 2, "right")), len(z) - 1)

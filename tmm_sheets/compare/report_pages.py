@@ -121,23 +121,23 @@ def _page(canvas: Any, document: Any) -> None:
 
 
 def _flow(story: Story) -> Iterator[Any]:
-    yield Paragraph(_said(story.title), TITLE)
-    yield from (Paragraph(_said(line), TEXT) for line in story.about)
+    yield Paragraph(_printable(story.title), TITLE)
+    yield from (Paragraph(_printable(line), TEXT) for line in story.about)
     if story.mistakes:
-        yield Paragraph(_said(tell("What is wrong")), HEAD)
+        yield Paragraph(_printable(tell("What is wrong")), HEAD)
         if any(m.picture is not None for m in story.mistakes):
             key = ((OURS, tell("exact")), (THEIRS, tell("drawn")), (WRONG, tell("wrong")))
-            yield Paragraph(" &nbsp; ".join(f'<font color="{c}">— {_said(said)}</font>' for c, said in key), SMALL)
+            yield Paragraph(" &nbsp; ".join(f'<font color="{c}">— {_printable(said)}</font>' for c, said in key), SMALL)
         yield from map(_mistake, story.mistakes)
     for table in story.tables:
-        yield Paragraph(_said(table.title), HEAD)
+        yield Paragraph(_printable(table.title), HEAD)
         yield _table(table)
     if story.unjudged:
-        yield Paragraph(_said(tell("What could not be judged, and why")), HEAD)
-        yield from (Paragraph("– " + _said(line), TEXT) for line in story.unjudged)
+        yield Paragraph(_printable(tell("What could not be judged, and why")), HEAD)
+        yield from (Paragraph("– " + _printable(line), TEXT) for line in story.unjudged)
 
 
-def _said(text: str) -> str:
+def _printable(text: str) -> str:
     """A text with the letters the font has; others become a question mark rather than nothing."""
     face = pdfmetrics.getFont(FONT).face
     return escape("".join(c if ord(c) in face.charToGlyph or c == "\n" else _LIKE.get(c, "?") for c in text), quote=False)
@@ -147,18 +147,18 @@ _LIKE = {"\u0305": "", "\u0304": "", "\u202f": " ", "\xa0": " ", "…": "...", "
 
 
 def _mistake(m: ToldMistake) -> Any:
-    what = _said(m.again or m.what)
-    parts: list[Any] = [Spacer(0, 5), Paragraph(_said(m.where), WHERE),
+    what = _printable(m.again or m.what)
+    parts: list[Any] = [Spacer(0, 5), Paragraph(_printable(m.where), WHERE),
                         Paragraph(f'<font color="{SIDES[m.verdict].hexval().replace("0x", "#")}">■</font> {what}'
                                   if ord("■") in pdfmetrics.getFont(FONT).face.charToGlyph else what, TEXT)]
-    parts += [Paragraph("– " + _said(line), SMALL) for line in m.details]
+    parts += [Paragraph("– " + _printable(line), SMALL) for line in m.details]
     if m.picture is not None:
         parts += [Spacer(0, 3), _picture(m.picture)]
     return KeepTogether(parts)
 
 
 def _table(table: StoryTable) -> Any:
-    cells = [[Paragraph(_said(c), SMALL) for c in row] for row in (table.head, *table.rows)]
+    cells = [[Paragraph(_printable(c), SMALL) for c in row] for row in (table.head, *table.rows)]
     longest = [min(max(len(row[k]) for row in (table.head, *table.rows)), 40) + 2 for k in range(len(table.head))]
     # No column narrower than its longest word.
     words = [max((pdfmetrics.stringWidth(w, FONT, SMALL.fontSize) for row in (table.head, *table.rows) for w in row[k].split()),

@@ -394,11 +394,11 @@ def continuous_argmax(f: Callable[[Floats], Floats], samples: Floats) -> float:
     """
     values, last = f(samples), len(samples) - 1
     k = int(np.argmax(values))
-    found = [_beside(f, samples, i, float(values[i])) for i in ((0, last) if k in (0, last) else (k,))]
+    found = [_refined_maximum(f, samples, i, float(values[i])) for i in ((0, last) if k in (0, last) else (k,))]
     return max(found, key=lambda one: one[1])[0]
 
 
-def _beside(f: Callable[[Floats], Floats], samples: Floats, k: int, value: float) -> tuple[float, float]:
+def _refined_maximum(f: Callable[[Floats], Floats], samples: Floats, k: int, value: float) -> tuple[float, float]:
     """Argument of the largest value between the neighbours of a sample, and that value.
 
     What differs by rounding is no neighbour: a border of an interval beside an angle of the grid.

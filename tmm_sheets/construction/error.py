@@ -429,7 +429,7 @@ def _kind(step: Step, i: int, a: Any) -> str:
     """Kind of an argument: what its step gives, or what the rule takes."""
     if isinstance(a, Step):
         return a.rule.gives
-    takes = _takes(step)
+    takes = _argument_kinds(step)
     return takes[i] if i < len(takes) else ""
 
 
@@ -437,12 +437,12 @@ def _is_curve(a: Any) -> bool:
     return isinstance(a, Step) and a.rule.gives == "curve"
 
 
-def _takes(step: Step) -> tuple[str, ...]:
+def _argument_kinds(step: Step) -> tuple[str, ...]:
     """Kinds of the arguments, those of a curve in its place."""
     if not any(map(_is_curve, step.args)):
         return step.rule.takes
     return tuple(kind for i, a in enumerate(step.args)
-                 for kind in (_takes(a) if _is_curve(a) else (step.rule.takes[i] if i < len(step.rule.takes) else "",)))
+                 for kind in (_argument_kinds(a) if _is_curve(a) else (step.rule.takes[i] if i < len(step.rule.takes) else "",)))
 
 
 def is_numeric(value: Any) -> bool:
@@ -502,7 +502,7 @@ def _derivatives(step: Step, args: tuple[Any, ...], base: Any, moves: list[tuple
             shifts += [(i, unit, h) for unit in ((1.0, 1j) if value.dtype.kind == "c" else (1.0,))]
     replays = _all_at_once(step, values, shifts, snapped, base)
     if replays is None:
-        replays = [replayed_step(step, [v + s * _like(h, v) * unit if j == i else v for j, v in enumerate(values)], snapped)
+        replays = [replayed_step(step, [v + s * _broadcast_like(h, v) * unit if j == i else v for j, v in enumerate(values)], snapped)
                    for i, unit, h in shifts for s in (1, -1)]
     found: dict[int, Matrices] = {}
     bend = np.zeros(1)
@@ -539,7 +539,7 @@ def _all_at_once(step: Step, values: list[Any], shifts: list[tuple[int, Any, Flo
     return found[:-1]
 
 
-def _like(h: Floats, value: Any) -> Any:
+def _broadcast_like(h: Floats, value: Any) -> Any:
     """Disturbance in the shape of what it disturbs: one number for one number."""
     return h if np.ndim(value) or len(h) > 1 else h[0]
 

@@ -24,7 +24,7 @@ class Node:
         return tuple(x for v in vars(self).values() for x in (v if isinstance(v, tuple) else (v,)) if isinstance(x, Node))
 
     def of_parts(self, change: Callable[[Node], Node]) -> Node:
-        """The same kind of node made of other nodes."""
+        """A node of this kind with changed parts."""
 
         def changed(value: Any) -> Any:
             if isinstance(value, Node):
@@ -210,7 +210,7 @@ def letters(markup: str) -> Node:
 
 
 def reworded(node: Node, table: Mapping[str, str]) -> Node:
-    """The same with other words: ``table`` knows functions, indices by themselves, or with the letter before (tg, пр, Jпр)."""
+    """A formula in another language: ``table`` has functions, indices alone or with their letter (tg, пр, Jпр)."""
     if isinstance(node, Words):
         name = node.text.strip()
         return Words(node.text.replace(name, table[name])) if name in table else node
@@ -299,16 +299,16 @@ def of_tree(tree: expression.Expression, operands: Sequence[Operand], least: int
 
 @lru_cache(4096)
 def simplified(tree: expression.Expression) -> expression.Expression:
-    """The same as a person writes it: no sums with zero, x·x as a square, a root of two squares spelt out."""
+    """An expression as a person writes it: no sums with zero, x·x as a square, a root of two squares spelt out."""
     if not isinstance(tree, expression.Operation):
         return tree
     parts = tuple(map(simplified, tree.parts))
     if tree.name == "+" and len(parts) > 1:
-        kept = tuple(p for p in parts if not _is(p, 0.0))
+        kept = tuple(p for p in parts if not _is_constant(p, 0.0))
         if len(kept) == 1:
             return kept[0]
         parts = kept or parts[:1]
-    if tree.name == "-" and len(parts) == 2 and _is(parts[0], 0.0):
+    if tree.name == "-" and len(parts) == 2 and _is_constant(parts[0], 0.0):
         return expression.Operation("-", parts[1:])
     if tree.name == "-" and len(parts) == 2 and _negated(parts[1]):
         return expression.Operation("+", (parts[0], parts[1].parts[0]))
@@ -331,10 +331,10 @@ def _tidied(sign: str, a: expression.Expression, b: expression.Expression) -> ex
         return expression.Constant(a.value * b.value)
     if sign == "+":
         return expression.Operation("-", (a, b.parts[0])) if _negated(b) else expression.Operation("+", (a, b))
-    if _is(b, 1.0) or (sign == "*" and _is(a, 1.0)):
-        return a if _is(b, 1.0) else b
-    if sign == "*" and (_is(a, -1.0) or _is(b, -1.0)):
-        return expression.Operation("-", (b if _is(a, -1.0) else a,))
+    if _is_constant(b, 1.0) or (sign == "*" and _is_constant(a, 1.0)):
+        return a if _is_constant(b, 1.0) else b
+    if sign == "*" and (_is_constant(a, -1.0) or _is_constant(b, -1.0)):
+        return expression.Operation("-", (b if _is_constant(a, -1.0) else a,))
     if _negated(a):
         return expression.Operation("-", (_tidied(sign, a.parts[0], b),))
     if sign == "*" and same(a, b):
@@ -353,7 +353,7 @@ def filled(tree: expression.Expression, arguments: Sequence[expression.Expressio
     return found
 
 
-def _is(tree: expression.Expression, value: float) -> bool:
+def _is_constant(tree: expression.Expression, value: float) -> bool:
     return isinstance(tree, expression.Constant) and tree.value == value
 
 

@@ -88,7 +88,7 @@ class NumPy(Language):
         """The line of an operation."""
         if value.function is not None:
             of = [name if self._whole(i) else f"single({name})" for i, name in zip(value.of, operands, strict=True)]
-            return f"{result} = {_called(value.does)}({', '.join(of)})"
+            return f"{result} = {_function_name(value.does)}({', '.join(of)})"
         if value.does in _OTHERS:
             return f"{result} = {_OTHERS[value.does].format(*operands)}"
         if _in_row(value):
@@ -106,7 +106,7 @@ def _in_row(value: ProgramValue) -> bool:
     return value.varies and value.does in REAL and value.function is None
 
 
-def _called(primitive: str) -> str:
+def _function_name(primitive: str) -> str:
     """Name of a primitive's function in the source."""
     return "_" + "".join(c if c.isalnum() else "_" for c in primitive)
 
@@ -144,7 +144,7 @@ class NumpySource:
                 head.append(f"    {''.join(f'{letter}{i}, ' for i in range(many))}= {letter}")
         self.text = "\n".join([*head, *(f"    {line}" for line in body), ""])
         self.constants = tuple(np.asarray(c) if isinstance(c, float) else c for c in language.constants)
-        self.primitives = {_called(name): function for name, function in program.primitives.items()}
+        self.primitives = {_function_name(name): function for name, function in program.primitives.items()}
 
     def function(self) -> Callable[..., None]:
         """The compiled function; the same text is compiled once."""

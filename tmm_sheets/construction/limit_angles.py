@@ -107,7 +107,7 @@ class Cosine:
     def __call__(self, phi: Reals) -> Any:
         """Values at crank angles, rad."""
         form, start = _prepared(self)
-        return form(_from(phi, start))
+        return form(_relative_angles(phi, start))
 
     @property
     def touches(self) -> bool:
@@ -123,7 +123,7 @@ class Cosine:
         if self.touches:
             with localcontext(prec=DIGITS):
                 double, start, pi = float(2 * self.b), split(self.start), split(-PI)
-            x = half(_from(phi, start), pi, 1)
+            x = half(_relative_angles(phi, start), pi, 1)
             near = np.abs(np.sin(x[0])) * 2 <= at_rest(phi)
             scale = double**0.5
             return np.where(near, 0.0, scale * sine(x))[()], scale / 2 * np.cos(x[0])
@@ -132,7 +132,7 @@ class Cosine:
 
     def slope(self, phi: Reals) -> Reals:
         """Derivative over the crank angle, rad."""
-        s, e = _from(phi, _prepared(self)[1])
+        s, e = _relative_angles(phi, _prepared(self)[1])
         return -float(self.b) * sine((s, e))
 
 
@@ -199,7 +199,7 @@ def at_rest(phi: Reals) -> Reals:
     return 1e-14 + 4 * np.spacing(np.abs(np.asarray(phi, dtype=float)))
 
 
-def _from(phi: Reals, start: tuple[float, float]) -> Pair:
+def _relative_angles(phi: Reals, start: tuple[float, float]) -> Pair:
     """Crank angles from a start in two doubles."""
     s, e = two_sum(np.asarray(phi, dtype=float), -start[0])
     return s, e - start[1]

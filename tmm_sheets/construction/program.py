@@ -112,7 +112,7 @@ def depending(steps: Iterable[Step], rows: Iterable[Any], chosen: Collection[str
     """What some steps are made of, themselves included, in order: those steps that depend on rows or chosen givens."""
     asked, found = {id(x) for x in rows}, dict[int, Step]()
     for step in ordered(steps, lambda step: [] if id(step) in asked else parents(step)):
-        if id(step) in asked or any(id(a) in asked or id(_behind(a)) in found or name_of(a) in chosen for a in step.args):
+        if id(step) in asked or any(id(a) in asked or id(_source_of(a)) in found or name_of(a) in chosen for a in step.args):
             found[id(step)] = step
     return list(found.values())
 
@@ -122,7 +122,7 @@ def name_of(x: Any) -> str | None:
     return None if isinstance(x, Step) else getattr(x, "name", None)
 
 
-def _behind(x: Any) -> Any:
+def _source_of(x: Any) -> Any:
     """The step of an argument that is one, or a number that was found by one."""
     return x.step if isinstance(x, FoundNumber) else x
 
@@ -154,11 +154,11 @@ def program(wanted: Mapping[str, Step], rows: Sequence[Any], chosen: Sequence[st
         raise CannotBuild(tell("nothing is made of the given {name}").format(name=", ".join(unused)),
                           tell("choose one that the record names, such as crank.length"))
     results = {name: walk.parts(step) for name, step in wanted.items()}
-    return _without_rest(Program(tuple(walk.list.values), tuple(rows), {name: walk.used[name] for name in chosen}, results,
+    return _only_needed(Program(tuple(walk.list.values), tuple(rows), {name: walk.used[name] for name in chosen}, results,
                                  tuple(walk.guards)))
 
 
-def _without_rest(p: Program) -> Program:
+def _only_needed(p: Program) -> Program:
     """Only values that results and guards are made of; inputs stay where they are asked for."""
     asked = {i for parts in p.results.values() for i in parts} | set(p.guards)
     for i in range(len(p.values) - 1, -1, -1):
@@ -312,14 +312,14 @@ def ufunc(does: str) -> str:
 def _arguments(compute: Callable[..., Any], count: int, exact: bool) -> frozenset[int] | None:
     """Numbers of the arguments that a rule's plain formula is made of; None for a rule without a formula."""
     tree = trace(compute, count)
-    return None if tree is None else frozenset(_met(tree, {}, exact))
+    return None if tree is None else frozenset(_argument_numbers(tree, {}, exact))
 
 
-def _met(tree: Expression, known: dict[int, frozenset[int]], exact: bool) -> frozenset[int]:
+def _argument_numbers(tree: Expression, known: dict[int, frozenset[int]], exact: bool) -> frozenset[int]:
     """Numbers of the arguments that a tree is made of, plain formulas written out."""
     if id(tree) not in known:
         if isinstance(tree, Operation):
-            of = [_met(part, known, exact) for part in tree.parts]
+            of = [_argument_numbers(part, known, exact) for part in tree.parts]
             plain = _plain(tree.function, exact)
             used = _arguments(plain, len(of), exact) if plain is not None else None
             if plain is not None and (guard := _guard(tree.function)) is not None:
@@ -370,7 +370,7 @@ class _Walk:
                 used = _arguments(step.rule.compute, len(step.args), self.exact)
                 if used is None:
                     raise CannotBuild(tell('rule "{rule}" has no formula').format(rule=step.rule.name))
-                asked.update(id(_behind(step.args[i])) for i in used)
+                asked.update(id(_source_of(step.args[i])) for i in used)
         return [step for step in found if id(step) in asked & varying]
 
     def take(self, step: Step) -> None:
@@ -385,8 +385,8 @@ class _Walk:
 
     def parts(self, x: Any) -> Parts:
         """A step, a given or a number as values."""
-        if id(_behind(x)) in self.known:
-            return self.known[id(_behind(x))]
+        if id(_source_of(x)) in self.known:
+            return self.known[id(_source_of(x))]
         if id(x) in self.rows:
             return self._input(self.rows[id(x)], x)
         if (name := name_of(x)) in self.chosen:

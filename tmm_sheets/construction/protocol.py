@@ -58,17 +58,17 @@ class SortSizes:
         values: dict[str, list[Any]] = {}
         for step in steps:
             if np.asarray(step.value).dtype.kind in "ifc":
-                values.setdefault(_sort(step), []).append(step.value)
+                values.setdefault(_comparison_class(step), []).append(step.value)
         self._of = {sort: Sizes(found) for sort, found in values.items()}
         self._own: dict[int, Sizes] = {}
 
     def at(self, step: Step, k: int) -> float:
         """Size of the sort of a step at position ``k``."""
-        of_sort = self._of.get(_sort(step))
+        of_sort = self._of.get(_comparison_class(step))
         return of_sort.at(k) if of_sort else 0.0
 
     def of_argument(self, arg: Any, k: int) -> float:
-        """The same of a step or a given number, which may stand in no plan of these: its own size counts too."""
+        """Size of the sort of a step or given number that may stand in none of these plans: its own size counts too."""
         if id(arg) not in self._own:
             own = value_of(arg)
             self._own[id(arg)] = Sizes([own] if np.asarray(own).dtype.kind in "ifc" else ())
@@ -81,7 +81,7 @@ def sizes_of(plan: Plan) -> SortSizes:
     return SortSizes((*plan, *plan.auxiliaries.values()))
 
 
-def _sort(step: Step) -> str:
+def _comparison_class(step: Step) -> str:
     """What steps of a plan are compared with: numbers with those of their letter (ω2 and ω3, ΣM4 and M50), of F with forces too."""
     gives = step.rule.gives
     if gives == "number":

@@ -382,7 +382,7 @@ class Reading:
 
 
 class Row(Reading):
-    """The same for a row of numbers, one at each position."""
+    """A row of numbers of an object, one at each position, read off a step of one of its plans."""
 
     def __get__(self, of: Any, owner: type) -> Any:
         """The values of the step."""
@@ -460,7 +460,7 @@ class Plan:
         if name in self.steps:
             if name not in self._of_task:
                 raise ValueError(f"plan {self.name!r} has a step {name!r} already")
-            self._give_way(name)
+            self._rename(name)
         step = self._step(name, rule, args, say, symbol)
         self.steps[name] = step
         return step
@@ -511,7 +511,7 @@ class Plan:
         self._of_task.add(found)
         return found
 
-    def _give_way(self, name: str) -> None:
+    def _rename(self, name: str) -> None:
         """Another name for a step that is called after the task, in its place in the order."""
         self._of_task.remove(name)
         other = self.named(name)

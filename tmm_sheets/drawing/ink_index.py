@@ -109,7 +109,7 @@ class InkIndex:
         vars(self).pop("_outlines", None)
         self._lines.clear()
         self.surroundings.clear()
-        for name, make in (("heavy", self._heavy_cells), ("light", self._light_cells)):
+        for name, make in (("heavy", self._forbidden_cells), ("light", self._remaining_cells)):
             if name in vars(self):
                 vars(self)[name].include(make(*before))
 
@@ -193,21 +193,21 @@ class InkIndex:
 
         Neighbours count as inked because main lines are up to a millimetre wide.
         """
-        return self._heavy_cells()
+        return self._forbidden_cells()
 
     @cached_property
     def light(self) -> Cells:
         """Cells of thin lines, which lettering should avoid."""
-        return self._light_cells()
+        return self._remaining_cells()
 
-    def _heavy_cells(self, lines: int = 0, texts: int = 0, fills: int = 0) -> Cells:
+    def _forbidden_cells(self, lines: int = 0, texts: int = 0, fills: int = 0) -> Cells:
         """Forbidden cells of the segments, texts and fills from these numbers on."""
         cells = self._cells(self._heavy, lines)
         cells.add_boxes(np.vstack((self.written[texts:], self._filled[fills:])))
         cells.widen()
         return cells
 
-    def _light_cells(self, lines: int = 0, *_: int) -> Cells:
+    def _remaining_cells(self, lines: int = 0, *_: int) -> Cells:
         return self._cells(~self._heavy, lines)
 
     def _cells(self, which: Flags, first: int) -> Cells:

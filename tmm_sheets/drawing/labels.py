@@ -162,7 +162,7 @@ class PlacedLabels:
         """How many other leaders and how much other lettering the leader of label ``k`` meets; how many leaders its lettering;
         which lines but its own it might be led to.
         """
-        _, a, b = self._others(k)
+        _, a, b = self._other_leaders(k)
         over = int(ink_index.enters(a, b - a, *self.boxes[k]).sum())
         if k not in self._led:
             return over
@@ -182,7 +182,7 @@ class PlacedLabels:
 
     def in_conflict(self, k: int) -> list[int]:
         """Labels whose leader or lettering the leader of label ``k`` meets, and those whose leader meets its lettering."""
-        others, a, b = self._others(k)
+        others, a, b = self._other_leaders(k)
         found = others[ink_index.enters(a, b - a, *self.boxes[k])].tolist()
         if k in self._led:
             start, end = self._led[k]
@@ -190,7 +190,7 @@ class PlacedLabels:
             found += [n for n in np.flatnonzero(ink_index.enters(start, end - start, *self.boxes.T)).tolist() if n != k]
         return list(dict.fromkeys(found))
 
-    def _others(self, k: int) -> tuple[npt.NDArray[np.int_], Points, Points]:
+    def _other_leaders(self, k: int) -> tuple[npt.NDArray[np.int_], Points, Points]:
         """Labels with leaders but for label ``k``, and where their leaders begin and end."""
         other = self._whose != k
         a, b = self._ends[other].T

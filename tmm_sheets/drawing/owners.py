@@ -73,7 +73,7 @@ class Surroundings:
         near = ink.parting(p, reach)
         a, b, of = ink.a[near], ink.b[near], ink.of[near]
         named, self.vector = subject = _subject(ink, label)
-        own, twin = _belongings(ink, [label], [subject], np.zeros(len(of), int), a, b, of)
+        own, twin = _own_segments(ink, [label], [subject], np.zeros(len(of), int), a, b, of)
         self._lines: tuple[Any, ...] = a, b, of, ink.strong[near], own, twin, ink.sides[:, near]
         rivals = ink.strong[near] & ~own | twin
         self._rivals = a[rivals], b[rivals]
@@ -116,10 +116,10 @@ class Surroundings:
     def _pairs(self, boxes: Floats) -> Pairs:
         """Segments no farther from each rectangle than the anchor is: nothing beyond it is nearer."""
         gap = np.abs(nearest(self.anchor, boxes) - self.anchor)[:, None]
-        which, near = self._near(boxes, np.maximum(gap + ROUNDING, 0.0 if self.vector is None else SEEN))
+        which, near = self._pairs_within_reach(boxes, np.maximum(gap + ROUNDING, 0.0 if self.vector is None else SEEN))
         return Pairs(which, self.a[near], self.b[near], self.of[near], self.own[near], self.twin[near], self.strong[near])
 
-    def _near(self, boxes: Floats, reach: Any) -> tuple[Numbers, Numbers]:
+    def _pairs_within_reach(self, boxes: Floats, reach: Any) -> tuple[Numbers, Numbers]:
         """Pairs of a rectangle, shape (4, m), and a segment within reach of it, by their numbers."""
         which, near = are_near(self.sides, boxes[:, :, None], reach).nonzero()
         return which, near
@@ -129,7 +129,7 @@ class Surroundings:
 
         Other leaders count more. ``starts``, at what is named, and ``ends``: shape (m,).
         """
-        which, near = self._near(sides(starts, ends), BESIDE + ROUNDING)
+        which, near = self._pairs_within_reach(sides(starts, ends), BESIDE + ROUNDING)
         along, d, foreign = (ends - starts)[which], (self.b - self.a)[near], ~self.own[near]
         parallel = np.abs((d * np.conj(along)).imag) < PARALLEL * np.abs(d) * np.abs(along)
         met = LED * self.count_unsure(self.first_met(starts, ends))
@@ -174,9 +174,9 @@ class Surroundings:
         a, b = self.vector
         within = [complex(z[0] + IN_HEAD * (z[1:].mean() - z[0])) for z in self._heads]
         places = [z for z in (*(a + share * (b - a) for share in SHARES), *within) if abs(z - self.anchor) > SYMBOL]
-        return [*places, self._most_alone(a, b)] if self._heads else places
+        return [*places, self._farthest_from_others(a, b)] if self._heads else places
 
-    def _most_alone(self, a: complex, b: complex) -> complex:
+    def _farthest_from_others(self, a: complex, b: complex) -> complex:
         """Where other lines are farthest from the vector: at the wide end of a fan, or beyond the end of one that runs along it."""
         along = a + np.linspace(min(SHARES), max(SHARES), FINE) * (b - a)
         far = Surroundings(self._ink, self._label, abs(b - a))
@@ -232,7 +232,7 @@ class Pairs(NamedTuple):
         if not len(which):
             return margins
         gaps, starts, ends = _to_box(a, b, boxes[:, which])
-        first = _firsts(which)
+        first = _group_starts(which)
         begin, end, rows = nearest(anchors, boxes), anchors.copy(), which[first]
         gap = np.abs(begin - end)
         own_gaps = np.where(own, gaps, inf)
@@ -277,7 +277,7 @@ class Pairs(NamedTuple):
         which, own, twin = self.which[pair], (self.own & ~self.twin)[pair], self.twin[pair]
         run = runs.begins[which] + np.arange(len(pair)) - (count.cumsum() - count).repeat(count)
         gaps = _to_box(self.a[pair], self.b[pair], runs.boxes[:, run] + boxes[[0, 1, 0, 1]][:, which])[0]
-        first = _firsts(which)
+        first = _group_starts(which)
         rows = which[first]
         foreign, nearest_own = (np.minimum.reduceat(np.where(of, gaps, inf), first) for of in (~own & ~twin, own))
         found[rows] = foreign - nearest_own
@@ -289,7 +289,7 @@ class Pairs(NamedTuple):
         return found, hardly
 
 
-def _firsts(which: Numbers) -> Numbers:
+def _group_starts(which: Numbers) -> Numbers:
     """Where each number begins among numbers in ascending order."""
     return np.concatenate(([True], which[1:] != which[:-1])).nonzero()[0]
 
@@ -305,7 +305,7 @@ def read_well(ink: InkIndex, labels: Sequence[Label], boxes: Floats) -> Flags:
                        [0.0 if vector is None else SEEN for _, vector in subjects])
     which, near = (ink.parts & are_near(ink.sides, boxes[:, :, None], reach[:, None])).nonzero()
     a, b, of = ink.a[near], ink.b[near], ink.of[near]
-    own, twin = _belongings(ink, labels, subjects, which, a, b, of)
+    own, twin = _own_segments(ink, labels, subjects, which, a, b, of)
     runs = [_runs(label.text, label.height)[:, :None if vector else 0] for (_, vector), label in zip(subjects, labels, strict=True)]
     counts = np.array([run.shape[1] for run in runs])
     pairs = Pairs(which, a, b, of, own, twin, ink.strong[near])
@@ -323,7 +323,7 @@ def _subject(ink: InkIndex, label: Label) -> _Subject:
     return named, _vector(ink, label, named)
 
 
-def _belongings(ink: InkIndex, labels: Sequence[Label], subjects: Sequence[_Subject], which: Numbers, a: Points, b: Points,
+def _own_segments(ink: InkIndex, labels: Sequence[Label], subjects: Sequence[_Subject], which: Numbers, a: Points, b: Points,
                 of: Numbers) -> tuple[Flags, Flags]:
     """Which segments, near the labels numbered ``which``, these may stand for; and which of them are other vectors on their line.
 

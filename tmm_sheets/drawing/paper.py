@@ -148,15 +148,15 @@ def with_bar(drawing: Drawing) -> Drawing:
     """The drawing with the control bar in the left margin, outside the frame."""
     canvas = Canvas(of="control bar")
     control_bar(canvas, 10 + 300j, 1j)
-    return _with(drawing, (*drawing.marks, *canvas.marks))
+    return _with_marks(drawing, (*drawing.marks, *canvas.marks))
 
 
 def without_outline(drawing: Drawing) -> Drawing:
     """The drawing without the outline of the paper, which a plotter cannot reach on paper of that size."""
-    return _with(drawing, tuple(m for m in drawing.marks if not _on_edge(m, drawing)))
+    return _with_marks(drawing, tuple(m for m in drawing.marks if not _on_edge(m, drawing)))
 
 
-def _with(drawing: Drawing, marks: tuple[Mark, ...]) -> Drawing:
+def _with_marks(drawing: Drawing, marks: tuple[Mark, ...]) -> Drawing:
     return Drawing(drawing.width, drawing.height, drawing.title, marks, drawing.author)
 
 

@@ -317,7 +317,7 @@ def ordered(paths: list[Path], start: Step = (0, 0)) -> list[Path]:
     if not paths:
         return []
     starts, ends = (np.array([complex(*p[k]) for p in paths]) for k in (0, -1))
-    order, turned = _nearest_next(starts, ends, complex(*start))
+    order, turned = _greedy_order(starts, ends, complex(*start))
     first, last = np.where(turned, ends, starts)[order], np.where(turned, starts, ends)[order]
     turned = turned[order]
     leap = np.append(np.abs(first[1:] - last[:-1]), 0.0)  # from the end of each path to the next one
@@ -346,7 +346,7 @@ def ordered(paths: list[Path], start: Step = (0, 0)) -> list[Path]:
     return [paths[k][::-1] if back else paths[k] for k, back in zip(order.tolist(), turned.tolist(), strict=True)]
 
 
-def _nearest_next(starts: Points, ends: Points, place: complex) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
+def _greedy_order(starts: Points, ends: Points, place: complex) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
     """Greedy order of paths, indices (n,), each with an end nearest to where the last stopped; (n,) True where reversed."""
     n, both = len(starts), np.concatenate((starts, ends))
     turned, order = np.zeros(n, dtype=bool), np.zeros(n, dtype=np.int64)

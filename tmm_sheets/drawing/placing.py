@@ -69,7 +69,7 @@ def interrupt(canvas: Canvas) -> None:
 def _gaps(line: Points, letters: _Letters, near: npt.NDArray[np.intp]) -> tuple[Stretch, ...]:
     """Where a line of chords is interrupted, in shares of its length; nowhere if too little of it would be left."""
     along = run(line)
-    hidden = sorted(_under(line, along, letters, near))
+    hidden = sorted(_stretches_under(line, along, letters, near))
     gaps, reached, length = list[Stretch](), 0.0, float(along[-1])
     for a, b in hidden:
         if gaps and a - reached < SHOWN:
@@ -109,7 +109,7 @@ def _letters(texts: Sequence[Text]) -> _Letters | None:
     return _Letters(at, u, low, high, bounds_of(corners.T).T)
 
 
-def _under(line: Points, along: npt.NDArray[np.float64], letters: _Letters, near: npt.NDArray[np.intp]) -> Iterator[Stretch]:
+def _stretches_under(line: Points, along: npt.NDArray[np.float64], letters: _Letters, near: npt.NDArray[np.intp]) -> Iterator[Stretch]:
     """Stretches of a line of chords that lie under some runs of letters."""
     z = (line - letters.at[near, None]) * letters.u[near, None].conj()
     low, high = letters.low[near, None], letters.high[near, None]
@@ -261,7 +261,7 @@ class PointNumbers:
 
     def __init__(self, canvas: Canvas) -> None:
         self._ink = InkIndex(canvas.marks)
-        self._set: list[Box] = []
+        self._set_note: list[Box] = []
 
     def place(self, pen: Canvas, points: Sequence[complex], text: str) -> bool:
         """Set the number of a point, or of some close together, over or under their lines, if it is nobody else's there."""
@@ -273,9 +273,9 @@ class PointNumbers:
                     box = Box(p.real, p.imag, p.real + wide, p.imag + height)
                     near = Box(box.x0 - WORD, box.y0 - ROWS, box.x1 + WORD, box.y1 + ROWS)
                     if self._stands_clear(box, points) and all(other.x0 > near.x1 or other.x1 < near.x0 or other.y0 > near.y1
-                                                               or other.y1 < near.y0 for other in self._set):
+                                                               or other.y1 < near.y0 for other in self._set_note):
                         pen.text(p, text, height)
-                        self._set.append(box)
+                        self._set_note.append(box)
                         return True
         return False
 
@@ -347,7 +347,7 @@ def set_notes(canvas: Canvas, ink: InkIndex) -> list[Crowded]:
     """Set every note of a canvas on its ``ink``, to which they come; returns those that found no free place, which are left out."""
     crowded, area = [], ink.area
     for note in canvas.notes:
-        pictures, own = _takes(canvas, ink, note)
+        pictures, own = _taken_boxes(canvas, ink, note)
         # Best between no picture of the view and its caption, if that is not far from the view.
         for apart, region, height in product((pictures, []), (note.box, area), HEIGHTS):
             found = [choice for n in LINES if (choice := _choice(ink, region, own, note, height, n, apart)) is not None
@@ -355,7 +355,7 @@ def set_notes(canvas: Canvas, ink: InkIndex) -> list[Crowded]:
             if found:
                 _, corner, lines = min(found, key=lambda choice: choice[0])
                 first = len(canvas.marks)
-                _set(canvas, note, corner, lines, height)
+                _set_note(canvas, note, corner, lines, height)
                 ink.add(canvas.marks[first:])
                 break
         else:
@@ -364,7 +364,7 @@ def set_notes(canvas: Canvas, ink: InkIndex) -> list[Crowded]:
     return crowded
 
 
-def _takes(canvas: Canvas, ink: InkIndex, note: PlacedNote) -> tuple[list[Box], Box]:
+def _taken_boxes(canvas: Canvas, ink: InkIndex, note: PlacedNote) -> tuple[list[Box], Box]:
     """Rectangles round the pictures that the view of a note has several of, each with its caption; round all that it has drawn.
 
     No pictures, and its place, where there is nothing, or nobody said what belongs to it.
@@ -407,7 +407,7 @@ def _choice(ink: InkIndex, region: Box, own: Box, note: PlacedNote, height: floa
     return float(cost[best]), complex(x[best], y[best]), lines
 
 
-def _set(canvas: Canvas, note: PlacedNote, corner: complex, lines: list[str], height: float) -> None:
+def _set_note(canvas: Canvas, note: PlacedNote, corner: complex, lines: list[str], height: float) -> None:
     canvas.of = note.of
     baseline = corner + 1j * letter(lines[-1], height).descent
     for k, line in enumerate(lines, 1):

@@ -260,10 +260,10 @@ def _fitted(parts: Mapping[str, str], sizes: tuple[float, ...], width: float, he
         # Three lines and more need some air between the rules of their cell.
         if widest * wide <= width and tall <= height - (1.0 if len(laid) > 2 else 0.0) and len(laid) <= MOST:
             return size, wide, wrapped
-    return size, wide, _shortened(wrapped, size, width / wide, min(max(room, len(parts)), MOST))
+    return size, wide, _cut_to_room(wrapped, size, width / wide, min(max(room, len(parts)), MOST))
 
 
-def _shortened(wrapped: Mapping[str, list[str]], size: float, width: float, room: int) -> dict[str, list[str]]:
+def _cut_to_room(wrapped: Mapping[str, list[str]], size: float, width: float, room: int) -> dict[str, list[str]]:
     """Cut parts down to ``room`` lines together, the longest first, and to ``width``; dots mark omissions."""
     count = {name: len(lines) for name, lines in wrapped.items()}
     while sum(count.values()) > room:

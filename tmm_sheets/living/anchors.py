@@ -150,12 +150,12 @@ class _Frame:
         """
         beside = [along] if len(along) > 1 else [] if along else [list(pair) for pair in self.vectors if pair[-1] == on[0]]
         if beside:
-            off, share, pair = min((self._beside(z, pair) for pair in beside), key=lambda found: abs(found[0]))
+            off, share, pair = min((self._off_line(z, pair) for pair in beside), key=lambda found: abs(found[0]))
             return pair[0], _nearer(off) / (self.direction(pair) or 1), pair, [pair[1], round(share, 6)]
         off = z - (self.place(on[0]) or 0)
         return on[0], (off if along else _nearer(off)) / (self.direction(along) or 1), along, None
 
-    def _beside(self, z: complex, pair: list[str]) -> tuple[complex, float, list[str]]:
+    def _off_line(self, z: complex, pair: list[str]) -> tuple[complex, float, list[str]]:
         """How a place lies off a line between two points, mm, and which share of the line is nearest to it."""
         a, b = (self.place(name) or 0j for name in pair)
         share = min(max(((z - a) * (b - a).conjugate()).real / abs(b - a) ** 2, 0.0), 1.0) if a != b else 0.0

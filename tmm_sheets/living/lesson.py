@@ -122,7 +122,7 @@ class _Lesson:
         for step in self.plan:
             if step.rule is rules.LINE_LINE:
                 for start, along in ((step.args[0], step.args[1]), (step.args[2], step.args[3])):
-                    stops.insert(self._behind(stops, start), self._line(step, start, along))
+                    stops.insert(self._step_told_after(stops, start), self._line(step, start, along))
             if (one := self._stop(step)) is not None:
                 if one["kind"] in ("lay", "similar"):
                     one["ends"] = [one["tail"], one["step"]]
@@ -177,7 +177,7 @@ class _Lesson:
         return {"symbol": symbol, "tail": ends[0], "head": ends[1], "times": 1 if sought else 2,
                 "line": lines.get(frozenset(ends), -1), "drawn": closed.get(ends, max(drawn.get(end, -1) for end in ends))}
 
-    def _behind(self, stops: list[dict[str, Any]], start: Step) -> int:
+    def _step_told_after(self, stops: list[dict[str, Any]], start: Step) -> int:
         """Where a line is told: behind its beginning, if only vectors of the same equation were laid off since; else now."""
         since = takewhile(lambda stop: stop["kind"] == "lay", reversed(stops))
         return next((len(stops) - n for n, stop in enumerate(since) if stop["step"] == self.index.id(start)), len(stops))

@@ -171,10 +171,10 @@ def _lost(steps: Iterable[Step], known: Mapping[int, Any], positions: int) -> se
 
 def _written(step: Step) -> bool:
     tree = step.rule.tree(len(step.args))
-    return tree is not None and all(name in PRIMITIVES or name in ("polar", "ray", "foot") for name in _called(tree, {}))
+    return tree is not None and all(name in PRIMITIVES or name in ("polar", "ray", "foot") for name in _primitives_of(tree, {}))
 
 
-def _called(tree: Any, seen: dict[int, None]) -> Iterator[str]:
+def _primitives_of(tree: Any, seen: dict[int, None]) -> Iterator[str]:
     """Primitives of a formula."""
     if id(tree) in seen:
         return
@@ -182,7 +182,7 @@ def _called(tree: Any, seen: dict[int, None]) -> Iterator[str]:
     if getattr(tree, "function", None) is not None:
         yield tree.name
     for part in getattr(tree, "parts", ()):
-        yield from _called(part, seen)
+        yield from _primitives_of(part, seen)
 
 
 def _frozen(wanted: Iterable[Step], known: Mapping[int, Any]) -> Iterator[tuple[int, Step]]:
@@ -295,7 +295,7 @@ class Searches:
     @property
     def told(self) -> dict[str, Any]:
         """What the page takes."""
-        return _there({"courses": self.courses, "dead": self.dead, "loads": self.loads, "friction": self.friction})
+        return _present({"courses": self.courses, "dead": self.dead, "loads": self.loads, "friction": self.friction})
 
     def _course(self, number: int, g: TriadGroup, steps: Iterable[Step]) -> dict[str, Any]:
         """A way of assembly: what holds the triangle, and which way is meant."""
@@ -324,7 +324,7 @@ class Searches:
         m = self.study.mechanism
         hinges = sorted({p.name for p in m.pairs if p.motion == "rotation" and m.frame in p.links} & set(m.fixed))
         nominal = self.project.cycle.numbering if c.division == "nominal" else None
-        return _there({**self._point(c.output), "axis": told(SENSES[c.working_sense]),
+        return _present({**self._point(c.output), "axis": told(SENSES[c.working_sense]),
                 "hinges": [self._argument(self.study.positions.points[name], name) for name in hinges],
                 "stroke": None if nominal is None else float(nominal["φ_рх"].value)})
 
@@ -341,7 +341,7 @@ class Searches:
         against = {"against motion": -1.0, "along motion": 1.0}.get(str(own.direction))
         turning = -1.0 if getattr(own, "sense", "") == "clockwise" else 1.0
         times = 1.0 if load.point is not None else turning if load.sign is None else float(load.sign)
-        found = _there({"against": against, "times": times, "stroke": own.stroke, "first": own.first,
+        found = _present({"against": against, "times": times, "stroke": own.stroke, "first": own.first,
                  "always": law.always, "tables": [table is not None for table in tables],
                  "diagrams": [self._diagram(load, n, len(tables)) for n in range(len(tables))]})
         if load.point is not None:
@@ -395,7 +395,7 @@ class Searches:
                     self.inputs[id(row)] = {"friction": len(found)}
             force, slides = self.study.forces.reactions[f"F{index}"], None if turns else of.sliding[index]
             self.forces |= {step.path: step for step in (force, slides) if step is not None}
-            found.append(_there({"force": {"step": force.path}, "slides": None if slides is None else {"step": slides.path}}))
+            found.append(_present({"force": {"step": force.path}, "slides": None if slides is None else {"step": slides.path}}))
         return found
 
 
@@ -405,6 +405,6 @@ def drawn_through(curve: Step) -> Any:
     return acts.args[0] if isinstance(acts, Step) else acts
 
 
-def _there(told: dict[str, Any]) -> dict[str, Any]:
+def _present(told: dict[str, Any]) -> dict[str, Any]:
     """What is there."""
     return {key: value for key, value in told.items() if value is not None}

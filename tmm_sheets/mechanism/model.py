@@ -310,7 +310,7 @@ class StructuralGroup:
 
     @property
     def lettered(self) -> str:
-        """The same as it is lettered, the lower number first: 4–5."""
+        """Link names as the pair is lettered, the lower number first: 4–5."""
         return lettered(self.links)
 
     @property

@@ -45,7 +45,7 @@ def decompose(m: Mechanism) -> tuple[StructuralGroup, ...]:
 
 def _group(i: str, j: str, pairs: list[Pair], placed: set[str]) -> StructuralGroup | None:
     """The group of two links, if each has one pair with the links placed and they have one with each other."""
-    joints = (_between(i, placed, pairs), _between(i, {j}, pairs), _between(j, placed, pairs))
+    joints = (_pairs_between(i, placed, pairs), _pairs_between(i, {j}, pairs), _pairs_between(j, placed, pairs))
     if any(len(found) != 1 for found in joints):
         return None
     (outer_i,), (inner,), (outer_j,) = joints
@@ -59,7 +59,7 @@ def _group(i: str, j: str, pairs: list[Pair], placed: set[str]) -> StructuralGro
 def _triad(i: str, pairs: list[Pair], placed: set[str]) -> TriadGroup | None:
     """The group of class III about a link, if it has three pairs with links that each have one more, with the links placed."""
     every = [(p, next(n for n in p.links if n != i)) for p in pairs if i in p.links]
-    found = [(p, leg, outer[0]) for p, leg in every if leg not in placed and len(outer := _between(leg, placed, pairs)) == 1]
+    found = [(p, leg, outer[0]) for p, leg in every if leg not in placed and len(outer := _pairs_between(leg, placed, pairs)) == 1]
     if len(found) < 3 or any(leg in placed for _, leg in every):
         return None
     found = found[:3]
@@ -68,6 +68,6 @@ def _triad(i: str, pairs: list[Pair], placed: set[str]) -> TriadGroup | None:
             slot=0.0 if p.motion == "translation" else None) for p, leg, q in found))
 
 
-def _between(link: str, others: set[str], pairs: list[Pair]) -> list[Pair]:
+def _pairs_between(link: str, others: set[str], pairs: list[Pair]) -> list[Pair]:
     """Pairs of a link with any of the others."""
     return [p for p in pairs if link in p.links and others & set(p.links)]

@@ -106,7 +106,7 @@ class _Slice:
 
 
 def arranged(blocks: Sequence[Block], measured: Measured) -> list[Block]:
-    """The same blocks with figures and tables where they stand best.
+    """Blocks with figures and tables moved to where they stand best.
 
     Parameters
     ----------

@@ -184,7 +184,7 @@ class Figure:
         return self.width if self.turned else self.height
 
     def sized(self, share: float) -> Figure:
-        """The same, smaller."""
+        """The figure, reduced."""
         return replace(self, width=self.width * share, height=self.height * share, least=self.least / share)
 
 

@@ -129,10 +129,10 @@ def render(note: Note, places: dict[str, Any]) -> bytes:
     made = _Writer(note, places).document()
     raw = io.BytesIO()
     made.save(raw)
-    return _settled(raw.getvalue())
+    return _with_fixed_dates(raw.getvalue())
 
 
-def _settled(data: bytes) -> bytes:
+def _with_fixed_dates(data: bytes) -> bytes:
     """The same archive with fixed dates; "[Content_Types].xml", which has to be the first, is the first of the sorted names."""
     with zipfile.ZipFile(io.BytesIO(data)) as old:
         return files.zipped({name: old.read(name) for name in sorted(old.namelist())})

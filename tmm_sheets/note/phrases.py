@@ -71,7 +71,7 @@ class Scope:
     reader: Reader | None = None
 
     def within(self, fields: Mapping[str, Any]) -> Scope:
-        """The same with some fields more, among them meanings of letters."""
+        """The scope with some fields more, among them meanings of letters."""
         letters = {**self.fields.get("letters", {}), **fields.get("letters", {})}
         return Scope({**self.fields, **fields, "letters": letters}, self.reader)
 
@@ -164,14 +164,14 @@ class Writer:
         self.template = name
         text = text_of(self.language, name)
         lines = list(enumerate(text.splitlines(), 1))
-        self._foresee(lines, scope, {to for to in _NAMED.findall(text) if to.startswith("@") and not to.startswith("@cite:")})
+        self._number_ahead(lines, scope, {to for to in _NAMED.findall(text) if to.startswith("@") and not to.startswith("@cite:")})
         try:
             return [*self._made(lines, scope), *self._paragraph()]
         except _Wrong as e:
             path = str(folder(self.language) / f"{name}.txt")
             raise BadInput(Problem(e.what, path, e.line)) from None
 
-    def _foresee(self, lines: Lines, scope: Scope, asked: set[str]) -> None:
+    def _number_ahead(self, lines: Lines, scope: Scope, asked: set[str]) -> None:
         """Numbers of what a template refers to before it comes: they are those of a first reading."""
         numbering, known = self.numbering, self.known
         self.numbering, self.known = deepcopy(numbering), set(known)
@@ -298,7 +298,7 @@ class Writer:
         """A line with its fields filled in."""
         found: list[Inline] = []
         at = 0
-        line = _OPTIONAL.sub(lambda m: m[1] if self._all_there(m[1], scope) else "", line)
+        line = _OPTIONAL.sub(lambda m: m[1] if self._is_complete(m[1], scope) else "", line)
         for m in _FIELD.finditer(line):
             before = line[at : m.start()]
             if (m[1] or "").startswith("@"):
@@ -312,7 +312,7 @@ class Writer:
     def _plain(self, line: str, n: int, scope: Scope) -> str:
         return "".join(map(str, self.text(line, n, scope)))
 
-    def _all_there(self, text: str, scope: Scope) -> bool:
+    def _is_complete(self, text: str, scope: Scope) -> bool:
         """Whether everything that some words refer to is in the note, and every field they name."""
         return all(scope.found(name) is not None if not name.startswith(("@", "#")) else
                    name.startswith(("#", "@cite:")) or self._label(name[1:], scope) is not None
@@ -392,7 +392,7 @@ def _count(value: Any) -> float:
 
 
 def _tidied(text: Iterable[Inline]) -> Text:
-    """The same with one space between words and none at the ends."""
+    """A text with one space between words and none at the ends."""
     found: list[Inline] = []
     for is_words, run in groupby(text, lambda x: isinstance(x, str)):
         parts = list(run)

@@ -185,7 +185,7 @@ class Pictures:
         if not readable(box):
             marks = bare(marks)
             box = extent(marks)
-        chosen = [m for m in marks if m.by is not None and _within(m.by.step, m.by.role, FOCUS.get(name, ()))]
+        chosen = [m for m in marks if m.by is not None and _is_in_focus(m.by.step, m.by.role, FOCUS.get(name, ()))]
         if chosen and not readable(box, SMALLEST):
             box = _cut(extent(chosen).inset(-AROUND).within(box))
             return [_figure(name, windowed(marks, box, "thin"), box.inset(-MARGIN))]
@@ -216,7 +216,7 @@ def _parts(name: str, marks: Sequence[Mark], box: Box) -> list[Figure]:
     return [replace(figure, part=i) for i, figure in enumerate(reversed(made), 1)]
 
 
-def _within(step: str, role: str, focus: Sequence[str]) -> bool:
+def _is_in_focus(step: str, role: str, focus: Sequence[str]) -> bool:
     shown = role in ("text", "point", "curve", "dimension", "symbol", "link")
     return any((shown and (step == name or step.startswith(f"{name}/"))) or role == name for name in focus)
 

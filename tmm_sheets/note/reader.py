@@ -202,7 +202,7 @@ class Reader:
         return self.number(value, self.unit_of(step) if unit is None else unit, self.id(step), self.position(step))
 
     def size(self, step: Step, unit: str | None = None) -> NumberInText:
-        """The same without its sign."""
+        """Value of a step at the position that is told, without its sign."""
         found = self.of(step, unit)
         return replace(found, text=found.text.removeprefix("−"), value=abs(found.value))
 
@@ -352,7 +352,7 @@ class Reader:
         return self.written(symbol, tree, quantities, replace(result, value=copysign(result.value, value)))
 
     def checked(self, symbol: str, build: Callable[..., Any], quantities: Sequence[NoteQuantity], step: Step) -> ShownFormula:
-        """The same for the value of a step, from a function of as many numbers as there are ``quantities``."""
+        """A formula checked against the value of a step, from a function of as many numbers as there are ``quantities``."""
         tree = build(*map(expression.Argument, range(len(quantities))))
         return self.agreed(symbol, tree, quantities, self.quantity(step, symbol))
 
@@ -369,7 +369,7 @@ class Reader:
         for step, sentence in zip(plan, protocol.sentences(plan, k, to_mm, name), strict=True):
             if skip(step) or _BARE.fullmatch(sentence):
                 continue
-            together = self._together(told[-1][1], sentence) if told else ""
+            together = self._joined_sentences(told[-1][1], sentence) if told else ""
             if together:
                 told[-1] = (told[-1][0], together)
             else:
@@ -377,7 +377,7 @@ class Reader:
         return tuple(piece for step, sentence in told
                      for piece in (*marked(self.quoted(sentence), self.id(step), position, self.language, names), " "))
 
-    def _together(self, first: str, second: str) -> str:
+    def _joined_sentences(self, first: str, second: str) -> str:
         """Two sentences that end with different letters as one: draw the lines AB, CD; empty where they differ in more."""
         alike, _, letter = second.rpartition(" ")
         for one, many in self.words["several"].items():

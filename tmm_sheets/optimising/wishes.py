@@ -160,7 +160,7 @@ class _Reader:
 
     def _factor(self) -> Reader:
         if self.sign("-", "−"):
-            return _over(np.negative, self._factor())
+            return _composed(np.negative, self._factor())
         if self.sign("("):
             found = self.sum()
             self._closed(")")
@@ -168,7 +168,7 @@ class _Reader:
         if self.sign("|"):
             found = self.sum()
             self._closed("|")
-            return _over(np.abs, found)
+            return _composed(np.abs, found)
         match = self._next()
         if match is None or match["sign"]:
             raise self.wrong(tell("expected a name of a result or a number"))
@@ -182,19 +182,19 @@ class _Reader:
             return self._result(name)
         if rest:  # max pressure angle
             self.at += 1
-            return _over(_OVER[first], self._result(rest))
+            return _composed(_OVER[first], self._result(rest))
         self.at += 1
         return self._function(first)
 
     def _function(self, name: str) -> Reader:
         if not self.sign("("):
-            return _over(_OVER[name], self._factor())
+            return _composed(_OVER[name], self._factor())
         found = [self.sum()]
         while self.sign(","):
             found.append(self.sum())
         self._closed(")")
         if len(found) == 1:
-            return _over(_OVER[name], found[0])
+            return _composed(_OVER[name], found[0])
         between = {"max": np.maximum, "min": np.minimum}.get(name)
         if between is None:
             raise self.wrong(tell("{name} takes one").format(name=name))
@@ -226,7 +226,7 @@ class _Reader:
         for end, part in ((".x", np.real), (".y", np.imag)):
             if name.endswith(end) and (found := self._named(name.removesuffix(end))):
                 self.names[found] = None
-                return _over(part, lambda values: values[found])
+                return _composed(part, lambda values: values[found])
         found = self._named(name)
         if not found:
             raise BadInput(tell('there is no result "{result}"').format(result=written), spelling.hint(name, self.known, 6, 0.5))
@@ -242,7 +242,7 @@ class _Reader:
         return ends[0] if ends else ""
 
 
-def _over(does: Callable[[Any], Any], of: Reader) -> Reader:
+def _composed(does: Callable[[Any], Any], of: Reader) -> Reader:
     return lambda values: does(of(values))
 
 

@@ -15,7 +15,7 @@ TOGETHER, APART = "kinematics_forces_wide", ("kinematics", "forces")
 
 
 def with_room(variant: Variant) -> Variant:
-    """The same with two sheets for kinematics and forces where its file names none and one is too small for both."""
+    """The variant with two sheets for kinematics and forces if its file names none and one is too small for both."""
     if variant.project.sheets is not None or TOGETHER not in variant.sheets:
         return variant
     from tmm_sheets.project import Project

@@ -72,11 +72,11 @@ class Task(NamedTuple):
 
 def one(task: Task, order: Order) -> Outcome:
     """Build one project into its folder; whatever goes wrong is told, not raised."""
-    outcome = copy_context().run(_one, task, order)  # the languages it sets are its own
+    outcome = copy_context().run(_build_one, task, order)  # the languages it sets are its own
     return replace(outcome, folder=task.folder) if task.student else outcome
 
 
-def _one(task: Task, order: Order) -> Outcome:
+def _build_one(task: Task, order: Order) -> Outcome:
     words.set_reader(order.reader)
     if not order.kept:
         kept.forgo()
@@ -128,10 +128,10 @@ def _start(told: Connection) -> None:
             signal.signal(getattr(signal, name), signal.SIG_IGN)
     # The pool ends the others so when one of them was killed.
     signal.signal(signal.SIGTERM, lambda *_: threading.Thread(target=_end).start())
-    threading.Thread(target=_watch, args=(told,), daemon=True).start()
+    threading.Thread(target=_wait_for_end, args=(told,), daemon=True).start()
 
 
-def _watch(told: Connection) -> None:
+def _wait_for_end(told: Connection) -> None:
     """Wait until the parent tells the end of the batch, or is no more."""
     above = multiprocessing.parent_process()
     assert above is not None
@@ -179,7 +179,7 @@ def carry_out(works: Sequence[Task], order: Order) -> Iterator[Outcome]:
     chunks = _chunks(works, workers)
     context = multiprocessing.get_context("fork" if "fork" in multiprocessing.get_all_start_methods() else None)
     told, end = context.Pipe(duplex=False)
-    with told, end, _signals(lambda: end.send_bytes(b".")) as signals:
+    with told, end, _caught_signals(lambda: end.send_bytes(b".")) as signals:
         try:
             with ProcessPoolExecutor(workers, context, initializer=_start, initargs=(told,)) as pool:
                 tasks = {pool.submit(several, chunk, order): chunk for chunk in chunks}
@@ -199,7 +199,7 @@ def carry_out(works: Sequence[Task], order: Order) -> Iterator[Outcome]:
 
 
 @contextmanager
-def _signals(act: Callable[[], None]) -> Iterator[list[int]]:
+def _caught_signals(act: Callable[[], None]) -> Iterator[list[int]]:
     """What signals ask for the end meanwhile; at the first ``act`` is called, the second ends the program at once."""
     found: list[int] = []
 

@@ -145,7 +145,7 @@ class Url(type(Path())):  # type: ignore[misc]
         return re.sub(URL, r"\1://", super().__str__().replace("\\", "/"), count=1)
 
     def absolute(self) -> Url:
-        """The same: it is."""
+        """The address, which is absolute."""
         return self
 
 
@@ -173,7 +173,7 @@ class ObjectStore:
 
             return url_to_fs(str(self.place))[0]
         except Exception as e:  # no library for it, or what that library says of the place
-            raise BadInput(Problem(_why(e), str(self.place), hint=install("store"))) from None
+            raise BadInput(Problem(_reason(e), str(self.place), hint=install("store"))) from None
 
     def check(self) -> None:
         """Refuse a place that cannot be written, before any work is done for it.
@@ -183,7 +183,7 @@ class ObjectStore:
         BadInput
             when it cannot, or no library for it is installed.
         """
-        self._put(TRIED, b"")
+        self._store_file(TRIED, b"")
         self._store.rm_file(str(self.path(TRIED)))
 
     def sweep(self, names: Iterable[str]) -> None:
@@ -209,18 +209,18 @@ class ObjectStore:
             when one of them cannot be put.
         """
         for name in reversed([*made]):
-            self._put(name, made[name])
+            self._store_file(name, made[name])
 
-    def _put(self, name: str, data: bytes) -> None:
+    def _store_file(self, name: str, data: bytes) -> None:
         store = self._store
         try:
             store.pipe_file(str(self.path(name)), data)
         except Exception as e:  # of whatever library reaches the store: no network, no such bucket, no key
-            raise BadInput(Problem(tell("cannot be written: {why}").format(why=_why(e)), str(self.path(name)),
+            raise BadInput(Problem(tell("cannot be written: {why}").format(why=_reason(e)), str(self.path(name)),
                                    hint=tell("is the bucket there, and are you known to it?"))) from None
 
 
-def _why(e: Exception) -> str:
+def _reason(e: Exception) -> str:
     """What a library that reaches stores says."""
     if isinstance(e, OSError):
         return reason_of(e)

@@ -163,7 +163,7 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     drawings = {n: composed.drawing for n, composed in drawn.items()}
     leaves = {n: paged[n][0] if n in paged else [drawing] for n, drawing in drawings.items()}
     made, beside = _rendered(leaves, [target for target in work.due if target in done], order, outlet, watch, say)
-    done, by_hand = _settled(done, work, made, outlet)
+    done, by_hand = _rename_finished(done, work, made, outlet)
     # A file without one of its sheets is not current.
     made_from = {target.name: work.made_from[target] if failed.isdisjoint(target.sheets) else "" for target in done}
     if made or whole_passed:
@@ -219,7 +219,7 @@ def _work(variant: Variant, order: Order, outlet: Outlet, numbers: list[int], wa
     return _Work(record, inputs, made_from, names, due, sheets, whole, stand_in)
 
 
-def _settled(done: list[Target], work: _Work, made: dict[str, bytes], outlet: Outlet) -> tuple[list[Target], list[str]]:
+def _rename_finished(done: list[Target], work: _Work, made: dict[str, bytes], outlet: Outlet) -> tuple[list[Target], list[str]]:
     """The files under their names at last, and which were changed by hand: not one that is just as it would be made now."""
     settled, by_hand = [], []
     for target in done:

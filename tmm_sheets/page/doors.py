@@ -432,7 +432,7 @@ class Shown:
         return {"name": self.name, "text": text, "followed": self.followed is not None}
 
     async def saved(self) -> AsyncIterator[dict[str, str | bool]]:
-        """The same each time that the file is saved."""
+        """The project, read again each time that the file is saved."""
         if self.followed is None:
             return
         before = files.state(self.followed)

@@ -160,7 +160,7 @@ def _formula_in_numbers(step: Step, tree: expression.Expression, k: int) -> str:
 @lru_cache(1024)
 def _pattern(tree: expression.Expression, signs: str) -> str:
     """A formula with marks in the places of its numbers: it is written alike for all numbers of the same ``signs``."""
-    return _spelt(tree, [_operand("-0" if sign == "-" else sign, chr(_MARK + i)) for i, sign in enumerate(signs)])
+    return _as_latex(tree, [_operand("-0" if sign == "-" else sign, chr(_MARK + i)) for i, sign in enumerate(signs)])
 
 
 _MARK = 0xE000
@@ -185,10 +185,10 @@ LATEX: Alphabet[str] = {
 
 def latex(tree: expression.Expression, texts: Sequence[str]) -> str:
     """LaTeX of a formula, the texts, letters or numbers, in the places of its arguments."""
-    return _spelt(tree, list(map(_operand, texts)))
+    return _as_latex(tree, list(map(_operand, texts)))
 
 
-def _spelt(tree: expression.Expression, operands: Sequence[Operand]) -> str:
+def _as_latex(tree: expression.Expression, operands: Sequence[Operand]) -> str:
     return " ".join(spelt(of_tree(tree, operands), LATEX).split())
 
 
@@ -249,7 +249,7 @@ def record(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any
 
 
 def recorded(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any], CannotBuild | None, StepIndex]:
-    """The same, and the index of the steps in it."""
+    """The record, why parts of it could not be built, and the index of its steps."""
     from tmm_sheets.sheets import sheet
 
     asked = list(numbers) or list(range(1, len(project.sheets) + 1))

@@ -66,7 +66,7 @@ def lines(project: Project, result: str) -> Iterator[str]:
                 given.add(arg.name)
                 yield _given(arg, at, book, step)
         yield _line(step, at, book)
-    yield f"{result}{tell(_OF_PART[told.part])} = {_shown(told, at, book)}"
+    yield f"{result}{tell(_OF_PART[told.part])} = {_value_in_words(told, at, book)}"
 
 
 def _no_part(project: Project, result: str, part: str) -> BadInput:
@@ -131,7 +131,7 @@ def sentence(step: Step, at: str, book: StepIndex) -> str:
     return protocol.sentence(step, _index(step, at, book), float, plan.unit if plan is not None else "")
 
 
-def _shown(told: Reported, at: str, book: StepIndex) -> str:
+def _value_in_words(told: Reported, at: str, book: StepIndex) -> str:
     value = told.value
     plan = book.plans.get(book.plan(told.step)) if told.step in book else None
     told_unit = "rad" if told.part == "angle" else unit(told.step, plan) if plan is not None else told.step.rule.unit

@@ -87,11 +87,11 @@ class Need:
     covered: float = 0.0
 
     def ending(self, floor: float, largest: tuple[float, float]) -> Need:
-        """The same need with the greatest scale factor of the series up to ``floor``, or that which its ``largest`` place takes."""
+        """The need with the greatest scale factor of the series up to ``floor``, or that which its ``largest`` place takes."""
         return replace(self, coarsest=max(rounded_down(floor), self.needed(*largest)))
 
     def readable(self, size: float, forces: int, each: float) -> Need:
-        """The same of a figure of such a size, in its unit, that has room along it for so many forces, ``each`` of a length, mm.
+        """The need of a figure of a size, in its unit, with room along it for so many forces, ``each`` of a length, mm.
 
         Where only its width and height are measured, arrows round a small figure take the same place as round a large one. What
         is small beside its own forces and their arms, slider blocks in a slot, is no larger at any factor that has room for these.
@@ -162,7 +162,7 @@ class BorderNode:
     still: set[tuple[Any, ...]] = field(default_factory=set)
 
     def again(self) -> BorderNode:
-        """The same once more for another tree: its borders move by themselves, what its places cost is known to both."""
+        """A copy for another tree: its borders move by themselves, what its places cost is known to both."""
         return replace(self, children=[child.again() for child in self.children], shares=[*self.shares],
                        tried={} if self.shares else self.tried, still=set())
 
@@ -232,7 +232,7 @@ class BorderNode:
         return moved
 
     def _move(self, i: int, steps: Sequence[float], width: float, height: float, free: float) -> bool:
-        """The same of the border after child ``i``, of what its place has ``free`` for the children."""
+        """Move the border after child ``i``, of what its place has ``free`` for the children."""
         now, pair = self.shares[i:i + 2], self.children[i:i + 2]
         best, least = now, inf
         for shares in (now, *[[now[0] + d, now[1] - d] for by in steps for d in (by, -by) if now[0] + d > 0 < now[1] - d]):

@@ -76,7 +76,7 @@ def _arranged(project: Project, n: int) -> Arrangement:
     too_many = moving and len(project.cycle.drawn) > kinematic_frames.MOST
     if too_many or project.variant.scales.keys() - {"indicator"} or not any(view.kind.place for view in plan.views):
         return as_written
-    ways = _ways(project, as_written)
+    ways = _arrangements(project, as_written)
     for way in ways[1:]:
         way.means(ways[0])
     found = [solved for way in ways if (solved := way.solved()) is not None]
@@ -97,7 +97,7 @@ def _with_all_groups(project: Project, plan: Arrangement) -> Arrangement:
     return replace(plan, views=tuple(every if view is some[0] else view for view in plan.views if view not in some[1:]))
 
 
-def _ways(project: Project, plan: Arrangement) -> list[_Way]:
+def _arrangements(project: Project, plan: Arrangement) -> list[_Way]:
     """All ways to arrange the views of a sheet; what a view needs is asked once for all that have it in one box."""
     known = dict[tuple[int, Box], list[tuple[ViewPlace, BorderNode]]]()
     ways = [*replace(plan, views=tuple(replace(view, known={}) for view in plan.views)).ways()]
@@ -278,7 +278,7 @@ def crowded(project: Project, sheets: Iterable[int]) -> Iterator[Remark]:
                 if isinstance(found, Remark):
                     yield found
                 elif found.size < found.least * (1 - 1e-6):
-                    yield _told(project, n, view, found)
+                    yield _too_small(project, n, view, found)
 
 
 def _read(project: Project, n: int, view: ViewPlace) -> list[Measured | Remark]:
@@ -289,7 +289,7 @@ def _read(project: Project, n: int, view: ViewPlace) -> list[Measured | Remark]:
         return []
 
 
-def _told(project: Project, n: int, view: ViewPlace, found: Measured) -> Remark:
+def _too_small(project: Project, n: int, view: ViewPlace, found: Measured) -> Remark:
     """That something is too small on sheet ``n``, and what to try."""
     values = {"n": n, "what": found.what, "size": found.size}
     if found.forces:
@@ -300,11 +300,11 @@ def _told(project: Project, n: int, view: ViewPlace, found: Measured) -> Remark:
         more = marked("{said}, or take a sheet more, sheets = [{names}]")
         said = Remark(marked("sheet {n}: {what} is {size:.3g} mm large, it is read from {least:.0f} mm on: {hint}"),
                       {**values, "least": found.least, "hint": Remark(found.hint)})
-    names = _apart(project, n, view, found)
+    names = _split_in_two(project, n, view, found)
     return said if names is None else Remark(more, {"said": said, "names": names})
 
 
-def _apart(project: Project, n: int, view: ViewPlace, small: Measured) -> str | None:
+def _split_in_two(project: Project, n: int, view: ViewPlace, small: Measured) -> str | None:
     """Sheets of a project, as they stand in its file, with kinematics and forces on two in the place of sheet ``n``.
 
     None where that does not make it as large as it is read, or would lose what else stands on the sheet.

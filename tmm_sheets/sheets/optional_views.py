@@ -169,7 +169,7 @@ def place_nearest(taken: Taken, sizes: Sequence[tuple[float, float]], inside: Bo
         if not len(near):
             continue
         middles = middles[near]
-        off = np.array([_off(middles, picture) for picture in pictures])
+        off = np.array([_distance_from_box(middles, picture) for picture in pictures])
         far = np.where(off[0] <= off.min(axis=0), np.abs(middles - spot), np.inf)
         k = int(np.argmin(far))
         if far[k] > allowed:
@@ -182,7 +182,7 @@ def place_nearest(taken: Taken, sizes: Sequence[tuple[float, float]], inside: Bo
     return second
 
 
-def _off(z: Points, box: Box) -> NDArray[np.float64]:
+def _distance_from_box(z: Points, box: Box) -> NDArray[np.float64]:
     """Distances of points from a box."""
     x, y = (np.maximum(np.maximum(low - v, v - high), 0.0) for v, low, high in ((z.real, box.x0, box.x1), (z.imag, box.y0, box.y1)))
     return np.asarray(np.hypot(x, y))
@@ -201,7 +201,7 @@ def cells_between(canvas: Canvas, inside: Box, lettering: bool = True) -> Taken:
     for begin, end in pairwise([*(k for k, part in enumerate(canvas.parts) if not part.title), len(canvas.parts)]):
         if _picture(canvas.parts[begin]) == "force plans":
             picture = inked_cells(canvas, range(begin, end), inside, lettering)
-            taken |= _between(picture, 0)[1] | _between(picture, 1)[1]
+            taken |= _cells_between(picture, 0)[1] | _cells_between(picture, 1)[1]
     return taken
 
 
@@ -232,7 +232,7 @@ def part_cells(canvas: Canvas, k: int, inside: Box) -> NDArray[np.bool_]:
     if part.draw == "title block":
         return cells_closed(inside, [])
     own = inked_cells(canvas, range(k, k + 1), inside)
-    along, across = _between(own, 0), _between(own, 1)
+    along, across = _cells_between(own, 0), _cells_between(own, 1)
     taken = along[0] | across[0] | along[1] & across[1]
     if _picture(part) == "wheels":
         taken |= across[1]
@@ -240,10 +240,10 @@ def part_cells(canvas: Canvas, k: int, inside: Box) -> NDArray[np.bool_]:
         # A title is that of all parts up to the next one: plans of several positions.
         after = (n for n in range(k + 1, len(canvas.parts)) if canvas.parts[n].headed or canvas.parts[n].draw != part.draw)
         whole = range(k, next(after, len(canvas.parts))) if part.headed else range(k, k + 1)
-        picture = _between(inked_cells(canvas, whole, inside), 0)[1] if len(whole) > 1 else own
+        picture = _cells_between(inked_cells(canvas, whole, inside), 0)[1] if len(whole) > 1 else own
         taken |= _under_title(picture)
         if len(whole) > 1:
-            taken |= _between(picture, 1)[1]
+            taken |= _cells_between(picture, 1)[1]
     return taken
 
 
@@ -257,7 +257,7 @@ def inked_cells(canvas: Canvas, parts: range, inside: Box, lettering: bool = Tru
         known = canvas.inked.get(key)
         if known is None:
             marks = canvas.marks[span[0]:span[1]]
-            z = np.concatenate((dense(marks, CELL), *map(_about, labels))) if lettering \
+            z = np.concatenate((dense(marks, CELL), *map(_reach_points, labels))) if lettering \
                 else dense((mark for mark in marks if mark.by is None or mark.by.role != "text"), CELL)
             cells = Cells(inside, CELL)
             cells.add_points(z)
@@ -274,7 +274,7 @@ def _under_title(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray(near[:, None] & (columns > top[:, None]) & (columns <= level))
 
 
-def _about(label: Label) -> Points:
+def _reach_points(label: Label) -> Points:
     """Points about a label's anchor as far away as its lettering may reach."""
     laid = letter(label.text, label.height)
     width, height = (size + label.gap + REACH for size in (laid.width, laid.ascent + laid.descent))
@@ -284,7 +284,7 @@ def _about(label: Label) -> Points:
     return label.anchor + np.array([0j, complex(u.real * width, u.imag * height)])
 
 
-def _between(cells: NDArray[np.bool_], axis: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _cells_between(cells: NDArray[np.bool_], axis: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Cells between two inked ones of a line along an axis: those that are less than ``OPEN`` apart, and any."""
     close, between = np.zeros((2, *cells.shape), bool)
     if cells.any():

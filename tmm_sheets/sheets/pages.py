@@ -73,7 +73,7 @@ class Piece:
         return replace(max(self, other, key=lambda one: len(one.marks)), marks=tuple(sorted(marks.items(), key=lambda own: own[0])))
 
     def parted(self) -> Piece:
-        """The same without what its lines do beyond its place."""
+        """The piece without what its lines do beyond its place."""
         kept = ((k, mark if not isinstance(mark, Line) else _cut(mark, self.place)) for k, mark in self.marks)
         return replace(self, marks=tuple((k, mark) for k, mark in kept if mark is not None))
 
@@ -133,7 +133,7 @@ def _cut(line: Line, place: Box) -> Line | None:
     return line._replace(a=inside[0], b=inside[1], gaps=gaps)
 
 
-def _together(pieces: Iterable[Piece], one: Callable[[Piece, Piece], bool]) -> list[Piece]:
+def _merged(pieces: Iterable[Piece], one: Callable[[Piece, Piece], bool]) -> list[Piece]:
     """Pieces that are ``one`` in twos made one, as long as there are any."""
     found = list[Piece]()
     for piece in pieces:
@@ -164,13 +164,13 @@ def pages_of(pieces: Sequence[Piece], asked: Paper, first: str) -> list[PaperPag
         return not a.cells.isdisjoint(b.cells)
 
     units = list[Piece]()
-    for unit in _together(pieces, touch):
+    for unit in _merged(pieces, touch):
         inside = [piece for piece in pieces if dict(piece.marks).keys() <= dict(unit.marks).keys()]
-        units += [unit] if has_room(unit, FOLLOWING) else _together(
+        units += [unit] if has_room(unit, FOLLOWING) else _merged(
             (piece.parted() for piece in inside),
             lambda a, b: touch(a, b) and Box.around(np.concatenate((a.ink.corners, b.ink.corners))) in (a.ink, b.ink))
     # What stands in the gaps of something stays there, if that makes it no larger than a page.
-    units = _together(units, lambda a, b: near(a.ink, b.ink) and bool(_filled([a.with_other(b)], [asked], first)))
+    units = _merged(units, lambda a, b: near(a.ink, b.ink) and bool(_filled([a.with_other(b)], [asked], first)))
     units.sort(key=lambda unit: (not has_room(unit), unit.begin))
     pages = min((_shared(units, asked, first, share / 20 * asked.width * asked.height) for share in range(1, 21)),
                 key=lambda pages: (len(pages), sum(page.area**2 for page in pages)))
@@ -199,7 +199,7 @@ def _filled(pieces: Sequence[Piece], papers: Iterable[Paper], form: str) -> Pape
              lambda piece: piece.ink.width)
     for one, size in product(papers, sizes):
         page = PaperPage(one, [])
-        if all(_put(piece, page, form) for piece in sorted(pieces, key=size, reverse=True)):
+        if all(_put_on_page(piece, page, form) for piece in sorted(pieces, key=size, reverse=True)):
             return page
     return None
 
@@ -220,7 +220,7 @@ def _spread(page: PaperPage, form: str) -> PaperPage:
     return page
 
 
-def _put(piece: Piece, page: PaperPage, form: str) -> bool:
+def _put_on_page(piece: Piece, page: PaperPage, form: str) -> bool:
     """Put a piece on a page where it has room; whether it has."""
     inside, ink = page.paper.frame.inset(EDGE), piece.ink
     closed = [block(form, page.paper), page.paper.designation, *(other.ink.moved(by) for other, by in page.placed)]

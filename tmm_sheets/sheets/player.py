@@ -146,7 +146,7 @@ def ratio(scale: Scale) -> str:
 
 
 def proportion(scale: Scale) -> str:
-    """The same without its letter: 4:1, 1:2,5."""
+    """A GOST 2.302 scale without its letter: 4:1, 1:2,5."""
     real = scale.mu * 1e3
     return f"{number(1 / real)}:1" if real <= 1 else f"1:{number(real)}"
 
@@ -225,7 +225,7 @@ class PlayerStage:
         return _label(self.plan, self.k)
 
     def position(self, k: int) -> PlayerStage:
-        """The same plan in the same place, at another position."""
+        """The plan in its place at another position."""
         return replace(self, k=k)
 
     def pen(self, step: Step | str, role: Role, *points: Step | str, along: Step | None = None, name: str = "") -> Canvas:

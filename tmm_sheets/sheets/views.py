@@ -334,7 +334,7 @@ def _read(path: Path, name: str) -> Arrangement:
     try:
         views = tuple(ViewPlace(v.pop("draw"), _box(v.pop("box")), others={name: _box(at) for name, at in v.pop("or", {}).items()},
                            options=v) for v in data.get("view", []))
-        offers = tuple(each for v in data.get("offer", []) for each in _offered(v))
+        offers = tuple(each for v in data.get("offer", []) for each in _offered_places(v))
         found = Arrangement(name, data["title"], data.get("code", ""), views, dict(data.get("without", {})), offers)
     except (KeyError, TypeError, ValueError) as e:
         raise BadInput(Problem(tell("expected title and [[view]] tables with draw and box, found {found!r}").format(found=e),
@@ -346,7 +346,7 @@ def _read(path: Path, name: str) -> Arrangement:
     return found
 
 
-def _offered(data: dict[str, Any]) -> list[ViewPlace]:
+def _offered_places(data: dict[str, Any]) -> list[ViewPlace]:
     draw, most = data.pop("draw"), data.pop("most", 0)
     return [ViewPlace(draw, ANYWHERE, options={**data, "nth": k}) for k in range(1, most + 1)] or [ViewPlace(draw, ANYWHERE, data)]
 

@@ -217,7 +217,7 @@ def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, 
                 tell("force {name}: which way are its working strokes?").format(name=f.name), tell('add for example sense = "+x"')
             )
         told = ("force", i, "sense") if f.sense is not None else ("cycle", "working_sense")
-        sense = GivenPoint(_way(mechanism, f.link, named, f.name), dotted(told), "", "", of.variant.source(*told))
+        sense = GivenPoint(_sense_vector(mechanism, f.link, named, f.name), dotted(told), "", "", of.variant.source(*told))
         motion = straight_motion(mechanism, cycle, f.point, sense, cycle.strokes, f.first).within(f.from_, f.to)
         toward = sense if toward is None else toward
         against = AGAINST.get(str(f.direction))
@@ -237,7 +237,7 @@ def _steady(load: ForceTable | MomentTable) -> bool:
     return load.value is not None and load.stroke == "both" and whole
 
 
-def _way(mechanism: Mechanism, link: str, named: str, force: str) -> complex:
+def _sense_vector(mechanism: Mechanism, link: str, named: str, force: str) -> complex:
     """Unit vector of a named sense; for a link on a fixed guide an axis only tells which way along the guide is meant."""
     if named not in SENSES:
         return _along_guide(mechanism, named, force)

@@ -64,7 +64,7 @@ def changed(text: str, changes: Mapping[str, Any]) -> str:
     document = pickle.loads(_document(text))
     for name, value in changes.items():
         try:
-            _put(document, key_path(name), value)
+            _set_value(document, key_path(name), value)
         except (IndexError, KeyError, TypeError, ValueError):
             raise BadInput(tell("{name}: there is no such place in the project file").format(name=name),
                            hint=tell("places are named as by why, counted from 0: crank.length, group[0].lengths[1]")) from None
@@ -79,7 +79,7 @@ def _document(text: str) -> bytes:
     return pickle.dumps(tomlkit.parse(text))
 
 
-def _put(document: Any, path: tuple[str | int, ...], value: Any) -> None:
+def _set_value(document: Any, path: tuple[str | int, ...], value: Any) -> None:
     place = document
     for part, after in pairwise(path):
         if isinstance(place, MutableMapping):

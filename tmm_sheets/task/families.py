@@ -41,7 +41,7 @@ def of(project: str) -> FolderFamily | None:
     if folder is None:
         return None
     file = folder / FILE
-    return _kept(folder, file.stat().st_mtime_ns if file.is_file() else 0)
+    return _as_last_written(folder, file.stat().st_mtime_ns if file.is_file() else 0)
 def folder_of(project: str) -> Path | None:
     """The folder of the family that a project name belongs to."""
     family, sign, _ = project.partition("/")
@@ -179,7 +179,7 @@ def installed_families() -> tuple[tuple[str, Path], ...]:
 
 
 @lru_cache(32)
-def _kept(folder: Path, changed: int) -> FolderFamily:
+def _as_last_written(folder: Path, changed: int) -> FolderFamily:
     """The family of a folder, as it was written last."""
     from tmm_sheets.task.family_folder import FolderFamily
 

@@ -63,9 +63,9 @@ def _lacking(text: str) -> str:
     from tmm_sheets.drawing.lettering import lacking
 
     lacks = lacking(text)
-    return tell("the drawing font has no {letters}").format(letters=", ".join(map(_told, lacks))) if lacks else ""
+    return tell("the drawing font has no {letters}").format(letters=", ".join(map(_described, lacks))) if lacks else ""
 
 
-def _told(char: str) -> str:
+def _described(char: str) -> str:
     shown = f'"{char}" ' if char.isprintable() else ""
     return f"{shown}({' '.join(filter(None, (f'U+{ord(char):04X}', unicodedata.name(char, ''))))})"

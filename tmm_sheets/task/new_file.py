@@ -90,7 +90,7 @@ def _mm(length: float) -> str:
     return f'"{round(1000 * length)} mm"'
 
 
-def _whole(length: float) -> float:
+def _whole_millimetres(length: float) -> float:
     return round(1000 * length) / 1000
 
 
@@ -99,10 +99,10 @@ def _place(at: complex) -> str:
 
 
 def _rod_and_rocker(made: _Tables, on: Driven) -> Driven:
-    r = _whole(on.reach)
+    r = _whole_millimetres(on.reach)
     pivot = on.middle + complex(4.2 * r, 0.5 * r)
-    pivot = complex(_whole(pivot.real), _whole(pivot.imag))
-    rod, rocker = _whole(4 * r), _whole(2.5 * r)
+    pivot = complex(_whole_millimetres(pivot.real), _whole_millimetres(pivot.imag))
+    rod, rocker = _whole_millimetres(4 * r), _whole_millimetres(2.5 * r)
     name, point = made.fixed(pivot), made.letter()
     _, link = made.group(1, tell("kind 1: a rod and a rocker about a fixed point"),
                          f'outer = ["{on.point}", "{name}"]\ninner = "{point}"\nlengths = [{_mm(rod)}, {_mm(rocker)}]\n')
@@ -115,7 +115,7 @@ def _rod_and_rocker(made: _Tables, on: Driven) -> Driven:
 
 
 def _rod_and_slider(made: _Tables, on: Driven) -> Driven:
-    m, along, length, point = on.middle, on.along, _whole(4 * on.reach), made.letter()
+    m, along, length, point = on.middle, on.along, _whole_millimetres(4 * on.reach), made.letter()
     guide = made.guide(_place(m), phase(along))
     made.group(2, tell("kind 2: a rod and a slider"),
                f'outer = ["{on.point}"]\ninner = "{point}"\nlength = {_mm(length)}\nguide = "{guide}"\n')
@@ -126,7 +126,7 @@ def _rod_and_slider(made: _Tables, on: Driven) -> Driven:
 def _block_and_rocker(made: _Tables, on: Driven) -> Driven:
     r = on.reach
     pivot = on.middle - 2.5j * r
-    pivot, length = complex(_whole(pivot.real), _whole(pivot.imag)), _whole(5 * r)
+    pivot, length = complex(_whole_millimetres(pivot.real), _whole_millimetres(pivot.imag)), _whole_millimetres(5 * r)
     name, point = made.fixed(pivot), made.letter()
     _, link = made.group(3, tell("kind 3: a block on the point before, in the slot of a rocker about a fixed point"),
                          f'outer = ["{on.point}", "{name}"]\n')

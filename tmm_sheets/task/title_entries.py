@@ -58,7 +58,7 @@ class Names:
         BadInput
             when the settings beside the project cannot be read.
         """
-        block, beside = variant.title_block, _beside(variant)
+        block, beside = variant.title_block, _from_settings(variant)
         found = {}
         for name in FIELDS:
             written = TitleEntry(getattr(block, name))
@@ -76,7 +76,7 @@ class Names:
         BadInput
             when the settings beside the project cannot be read.
         """
-        written, beside = variant.paper, _beside(variant)
+        written, beside = variant.paper, _from_settings(variant)
         told = {name: self.options.get(name) or ((entry := beside.get(name) or self.user.get(name)) and entry.text)
                 for name in PAPER if name in self.options or name not in written.model_fields_set}
         return written.model_copy(update={name: text for name, text in told.items() if text})
@@ -115,7 +115,7 @@ def beside_of(variant: Variant) -> Path:
     return Path(FILE) if variant.shipped else Path(variant.file).parent / FILE
 
 
-def _beside(variant: Variant) -> dict[str, TitleEntry]:
+def _from_settings(variant: Variant) -> dict[str, TitleEntry]:
     """What the settings beside a project say; a project file may have their name itself."""
     path = beside_of(variant)
     return {} if path == Path(variant.file) else of_file(path)
@@ -178,7 +178,7 @@ def of_file(path: Path) -> dict[str, TitleEntry]:
 
 
 def _problem(problem: Problem) -> Problem:
-    """The same, with what to do about a name that stands above its table."""
+    """A problem with what to do about a name that stands above its table."""
     if problem.field not in (*FIELDS, *PAPER):
         return problem
     above = tell("[title_block] in a line above it") if problem.field in FIELDS else tell("[paper] in a line above it")

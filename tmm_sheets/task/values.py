@@ -30,11 +30,11 @@ def parsed(value: Any, quantity: units.Quantity) -> float:
     """
     found, written = units.read(value, quantity)
     if abs(found) > GREATEST:
-        raise _beyond(value, quantity)
+        raise _out_of_range(value, quantity)
     return 0.0 if abs(found) < LEAST or abs(written) < ROUNDING else found
 
 
-def _beyond(value: Any, quantity: units.Quantity) -> units.Refused:
+def _out_of_range(value: Any, quantity: units.Quantity) -> units.Refused:
     said = tell("{expected} of {least:g} to {greatest:g} in SI units, not {given!r}; is the unit right?")
     return units.Refused(said.format(expected=tell(quantity.expected), least=LEAST, greatest=GREATEST, given=value))
 
@@ -45,7 +45,7 @@ def si(quantity: units.Quantity) -> BeforeValidator:
 
 
 def si_or(word: str, quantity: units.Quantity) -> BeforeValidator:
-    """The same, or one word in its place."""
+    """Reads a quantity into SI, or one word in its place."""
     return BeforeValidator(lambda value: value if value == word else parsed(value, quantity))
 
 
@@ -104,7 +104,7 @@ def positive(quantity: units.Quantity, wording: str) -> BeforeValidator:
     def check(value: Any) -> float:
         found = parsed(value, quantity)
         if not found and units.parse(value, quantity) > 0:
-            raise _beyond(value, quantity)
+            raise _out_of_range(value, quantity)
         if not found > 0:
             raise ValueError(tell(wording))
         return found
@@ -216,7 +216,7 @@ def _direction(value: Any) -> float | str:
         raise ValueError(tell('expected "against motion", "along motion" or an angle, for example "30 deg"')) from None
 
 
-def _through(value: Any) -> str | tuple[float, float]:
+def _point_or_coordinates(value: Any) -> str | tuple[float, float]:
     """Name of a point or its two coordinates."""
     if isinstance(value, str) and value.strip():
         return value
@@ -231,7 +231,7 @@ MemberName = Annotated[str, AfterValidator(_member), BeforeValidator(_name)]
 WheelName = Annotated[str, AfterValidator(_wheel), BeforeValidator(_name)]
 CarrierName = Annotated[str, AfterValidator(_carrier), BeforeValidator(_name)]
 ForceDirection = Annotated[str | float, BeforeValidator(_direction)]
-GuidePoint = Annotated[str | tuple[float, float], BeforeValidator(_through)]
+GuidePoint = Annotated[str | tuple[float, float], BeforeValidator(_point_or_coordinates)]
 
 
 def _diagram(value: Any) -> tuple[tuple[str | float, str | float], ...]:

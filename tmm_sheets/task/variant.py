@@ -214,7 +214,7 @@ class Variant(Table):
         return self._shipped
 
     def shipped_as(self, name: str) -> "Variant":
-        """The same as a shipped project of that name."""
+        """The variant as a shipped project of that name."""
         self._called, self._shipped = name, True
         return self
 
@@ -229,7 +229,7 @@ class Variant(Table):
         return tuple(name for name in self.project.sheets if name not in _SECTIONS or getattr(self, name) is not None)
 
     def drawable(self) -> tuple[str, ...]:
-        """The same where at least one sheet is needed.
+        """Arrangements of the sheets to draw, of which there must be at least one.
 
         Raises
         ------

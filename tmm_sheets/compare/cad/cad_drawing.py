@@ -115,7 +115,7 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     state = Comparison(elements, space, moves, tolerance)
     _not_compared(state)
     cad_lettering.texts(state)
-    _right(state)
+    _find_in_place(state)
     cad_lettering.drawn_letters(state)
     cad_extras.left_out(state, cad_extras.KINDS.keys() - cad_extras.FOUND_LAST)
     symbol_matching.hatching(state)
@@ -155,7 +155,7 @@ LETTER = 4
 """A stroke that is more than so many times as long as a letter is high is none of a letter."""
 
 
-def _right(state: Comparison) -> None:
+def _find_in_place(state: Comparison) -> None:
     """Find the elements with ink everywhere along them, and where the others have some."""
     numbers = [n for n in range(len(state.elements)) if state.paths[n]]
     ours, of, base = state.ours(numbers)

@@ -83,7 +83,7 @@ def left_out(state: Comparison, kinds: Collection[str]) -> None:
     drawn = {n: there > DRAWN_SHARE for some in of.values() for n in some if (there := _share(state, n)) is not None}
     for (kind, view), numbers in of.items():
         if view in state.moved and kind in FOUND_LAST:
-            _set_aside(state, [n for n in numbers if state.found[n].missing or _other_words(state, n)], kind)
+            _set_aside(state, [n for n in numbers if state.found[n].missing or _is_other_text(state, n)], kind)
             continue
         here = [drawn[n] for n in numbers if n in drawn]
         everywhere = [drawn[n] for (k, _), some in of.items() if k == kind for n in some if n in drawn]
@@ -101,7 +101,7 @@ def _share(state: Comparison, n: int) -> float | None:
     return extent(inked) / extent(clear) if extent(clear) > 1.0 else None
 
 
-def _other_words(state: Comparison, n: int) -> bool:
+def _is_other_text(state: Comparison, n: int) -> bool:
     """Whether a text that stands there is none for this one: a title, a label without some of its parts, or that of another."""
     e, finding = state.elements[n], state.found[n]
     if e.kind != "text" or finding.says is None:
@@ -145,7 +145,7 @@ def extra(state: Comparison) -> tuple[ExtraStroke, ...]:
     length, owner = state.theirs.length, state.theirs.owner
     along = np.cumsum(length) - length + owner  # strokes lie a millimetre apart
     whole, first = np.bincount(owner, length), np.searchsorted(owner, np.arange(len(state.space.strokes)))
-    mostly = _mostly(state)
+    mostly = _main_owners(state)
     found: list[tuple[list[Left], float]] = []
     excess: list[tuple[float, int, list[Left]]] = []
     for chain in _chains(along, free):
@@ -169,7 +169,7 @@ def extra(state: Comparison) -> tuple[ExtraStroke, ...]:
     return tuple(sorted((*_extra_lines(state, found), *_extra_areas(state, drawn), *texts), key=lambda x: -x.length))
 
 
-def _mostly(state: Comparison) -> dict[int, tuple[float, int]]:
+def _main_owners(state: Comparison) -> dict[int, tuple[float, int]]:
     """The element that most of a stroke belongs to, and how much, mm, by the number of the stroke."""
     every = state.in_place
     owned = np.array([(j, n, b - a) for n, parts in state.owned.items() for j, a, b in parts]).reshape(-1, 3)

@@ -270,7 +270,7 @@ class DxfReader:
         entities: list[Entity] = []
         found: list[DrawnStroke | Area | Writing] = []
         parts = list(self._parts(layout))
-        fine = self._fine(e for _, e, _ in parts)
+        fine = self._sagitta(e for _, e, _ in parts)
         attributes = {e.dxf.text for _, e, _ in parts if e.dxftype() == "ATTRIB"}
         for outer, e, look in parts:
             kind = e.dxftype()
@@ -288,13 +288,13 @@ class DxfReader:
                 found.extend(self._contents(e, kind, len(entities) - 1, fine))
             except (ValueError, TypeError, AttributeError, ZeroDivisionError, KeyError, IndexError, ArithmeticError):
                 self.unread[kind] += 1  # a broken entity must not hide the others; what was read before an error stays
-        return self._sound(name, entities, found, fine)
+        return self._cleaned_space(name, entities, found, fine)
 
-    def _sound(self, name: str, entities: list[Entity], found: Sequence[DrawnStroke | Area | Writing], fine: float) -> DrawingSpace:
+    def _cleaned_space(self, name: str, entities: list[Entity], found: Sequence[DrawnStroke | Area | Writing], fine: float) -> DrawingSpace:
         """A space without what has no size, whose coordinates are no numbers, or what lies in its own place again and again."""
         strokes = [s for s in found if isinstance(s, DrawnStroke)]
-        self.nowhere += len({s.entity for s in strokes if not _somewhere(s.points)})
-        strokes = [s for s in strokes if len(s.points) > 1 and _somewhere(s.points)]
+        self.nowhere += len({s.entity for s in strokes if not _are_finite(s.points)})
+        strokes = [s for s in strokes if len(s.points) > 1 and _are_finite(s.points)]
         copies = Counter[bytes]()
         once = []
         for s in strokes:
@@ -302,8 +302,8 @@ class DxfReader:
             copies[place] += 1
             once += [s] if copies[place] <= MOST_COPIES else []
         self.copied += len(strokes) - len(once)
-        areas = [a._replace(points=_open_ended(a.points)) for a in found if isinstance(a, Area) and _somewhere(a.points)]
-        writings = (w for w in found if isinstance(w, Writing) and isfinite(w.height) and _somewhere(np.array([w.at]))
+        areas = [a._replace(points=_open_ended(a.points)) for a in found if isinstance(a, Area) and _are_finite(a.points)]
+        writings = (w for w in found if isinstance(w, Writing) and isfinite(w.height) and _are_finite(np.array([w.at]))
                     and w.text.strip())
         return DrawingSpace(name, tuple(once), tuple(a for a in areas if len(a.points) > 2), tuple(writings), tuple(entities))
 
@@ -324,7 +324,7 @@ class DxfReader:
             for p in self._lines(e, kind, fine):
                 self.count(points=len(p))
                 yield DrawnStroke(p, n)
-            yield from (Area(p, n) for p in _wide(e, kind))
+            yield from (Area(p, n) for p in _tapering_outlines(e, kind))
 
     def paper(self, layout: Any, model: DrawingSpace) -> DrawingSpace:
         """A sheet of paper space together with what its viewports show of the model."""
@@ -343,11 +343,11 @@ class DxfReader:
         """Entity of the layout, primitive it consists of, look of that primitive."""
         for e in layout:
             try:
-                yield from ((e, part, look) for part, look in self._apart(e, None))
+                yield from ((e, part, look) for part, look in self._primitives(e, None))
             except (ValueError, TypeError, AttributeError, KeyError, ZeroDivisionError, RecursionError):
                 self.unread[e.dxftype()] += 1
 
-    def _apart(self, e: Any, of: _EntityLook | None, within: tuple[str, ...] = ()) -> Iterator[tuple[DXFEntity, _EntityLook]]:
+    def _primitives(self, e: Any, of: _EntityLook | None, within: tuple[str, ...] = ()) -> Iterator[tuple[DXFEntity, _EntityLook]]:
         """Primitives of an entity; ``of`` is the look of the block reference or dimension it is part of."""
         from ezdxf.protocols import SupportsVirtualEntities, virtual_entities
 
@@ -374,7 +374,7 @@ class DxfReader:
             within = (*within, name) if name else within
             inner = chain(e.attribs if kind == "INSERT" else (), virtual_entities(e))
         for part in inner:
-            yield from self._apart(part, look, within)
+            yield from self._primitives(part, look, within)
 
     def _look(self, e: Any, of: _EntityLook | None) -> _EntityLook:
         """Layer, line type and weight of an entity, as its layer or what it is part of determines them."""
@@ -388,14 +388,14 @@ class DxfReader:
         weight = of_layer.weight if weight == BYLAYER else by_block.weight if weight == BYBLOCK else weight
         return _EntityLook(layer, line, weight)
 
-    def _fine(self, parts: Iterator[Any]) -> float:
+    def _sagitta(self, parts: Iterator[Any]) -> float:
         """Sagitta for flattening, from the approximate size of the drawing."""
         z = []
         keys = {"LINE": ("start", "end"), "CIRCLE": ("center",), "ARC": ("center",), "TEXT": ("insert",), "MTEXT": ("insert",)}
         for e in parts:
             at = [e.dxf.get(key) for key in keys.get(e.dxftype(), ())]
             z += [complex(p[0], p[1]) for p in (e[:2] if e.dxftype() == "LWPOLYLINE" else at) if p is not None]
-        p = np.array([at for at in z if _somewhere(np.array([at]))])
+        p = np.array([at for at in z if _are_finite(np.array([at]))])
         if len(p) < 2:
             return 0.005
         # A few strays far off must not count.
@@ -410,19 +410,19 @@ class DxfReader:
         if kind in UNREAD or kind == "POLYFACE" or (kind == "POLYLINE" and not (e.is_2d_polyline or e.is_3d_polyline)):
             self.unread[kind] += 1
         elif kind == "LINE":
-            yield self._seen([e.dxf.start, e.dxf.end])
+            yield self._projected([e.dxf.start, e.dxf.end])
         elif kind == "LWPOLYLINE" and e.dxf.get("extrusion", (0, 0, 1))[2] == 1 and not e.has_arc:
             points = np.array([complex(x, y) for x, y in e.get_points("xy")])
             yield np.append(points, points[:1]) if e.closed and len(points) else points
         elif kind in CURVES:
-            yield self._seen(list(e.flattening(max(fine, COARSEST * _extent(e, kind)))))
+            yield self._projected(list(e.flattening(max(fine, COARSEST * _extent(e, kind)))))
         else:
             from ezdxf import path
 
             for part in path.make_path(e, segments=16).sub_paths():
-                yield self._seen(list(part.flattening(fine, segments=4)))
+                yield self._projected(list(part.flattening(fine, segments=4)))
 
-    def _seen(self, vertices: list[Any]) -> Points:
+    def _projected(self, vertices: list[Any]) -> Points:
         """The vertices from above; that some have a height is noted."""
         self.raised = self.raised or any(abs(v.z) > 1e-6 for v in vertices)
         return _xy(vertices)
@@ -440,7 +440,7 @@ def _xy(vertices: Any) -> Points:
     return np.array([complex(v[0], v[1]) for v in vertices])
 
 
-def _somewhere(z: Points) -> bool:
+def _are_finite(z: Points) -> bool:
     """Whether these are places of a drawing: numbers, and none beyond all measure."""
     return bool((np.abs([z.real, z.imag]) <= FARTHEST).all())
 
@@ -500,7 +500,7 @@ def _hatch(e: Any, fine: float) -> tuple[list[Points], list[Points]]:
     return lines, outlines
 
 
-def _wide(e: Any, kind: str) -> Iterator[Points]:
+def _tapering_outlines(e: Any, kind: str) -> Iterator[Points]:
     """Outlines of tapering segments of a polyline, by which arrow heads are drawn."""
     if kind != "LWPOLYLINE":
         return

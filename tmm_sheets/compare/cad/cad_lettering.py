@@ -66,9 +66,9 @@ class _Reading:
         self.free = set(range(len(writings)))
 
     def alike(self, sizes: float = inf) -> None:
-        """The same text near by, the nearest pairs first; of two heights none is more than ``sizes`` times the other."""
+        """Pair equal texts near each other, the nearest first; neither height is more than ``sizes`` times the other."""
         by_meaning = grouped(range(len(self.writings)), lambda k: meant(self.writings[k].text))
-        pairs = [(_beyond(want, self.writings[k]), n, k) for n, want in enumerate(self.wanted)
+        pairs = [(_distance_of_middles(want, self.writings[k]), n, k) for n, want in enumerate(self.wanted)
                  for k in by_meaning.get(meant(want.text), ())
                  if n not in self.found and (sizes == inf or 1 / sizes <= self.writings[k].height / want.height <= sizes)]
         for far, n, k in sorted(pairs):
@@ -83,9 +83,9 @@ class _Reading:
         for strangers in (0, 1, 2):
             for margin in (0.0, 0.25, 0.5):
                 for n, want in self._missing():
-                    near = [k for k in self._about(want)
+                    near = [k for k in self._texts_near(want)
                             if k in self.free and _inside(want, self.writings[k].at, margin * (want.height + 1.0) + ONE_PLACE)]
-                    if order := next(filter(None, (self._spelling(some, want) for some in _but(near, strangers))), None):
+                    if order := next(filter(None, (self._spelling(some, want) for some in _all_but_some(near, strangers))), None):
                         self._take(n, *order)
 
     def _spelling(self, near: list[int], want: Element) -> list[int]:
@@ -95,12 +95,12 @@ class _Reading:
         """
         meaning, several = meant(want.text), len(near) > 1
         for ends, lift in ((0.0, 0.0), (0.5, 0.0), (0.5, 0.5), (0.5, -0.5)):
-            order = self._along(near, want, ends, lift)
-            if order and _same(meant("".join(self.writings[k].text for k in order)), meaning, several):
+            order = self._texts_in_line(near, want, ends, lift)
+            if order and _says_the_same(meant("".join(self.writings[k].text for k in order)), meaning, several):
                 return order
         return []
 
-    def _along(self, near: list[int], want: Element, ends: float = 0.5, lift: float = 0.0) -> list[int]:
+    def _texts_in_line(self, near: list[int], want: Element, ends: float = 0.5, lift: float = 0.0) -> list[int]:
         """Texts in the direction of a wanted one, by their left ends (0.5) or middles (0); ``lift`` puts off what stands higher."""
         along = want.points[1] - want.points[0]
         u = np.conj(along) / max(abs(along), 1e-9)
@@ -110,7 +110,7 @@ class _Reading:
     def contained(self) -> None:
         """A text with ours among its words."""
         for n, want in self._missing():
-            for k in self._about(want, 150.0):
+            for k in self._texts_near(want, 150.0):
                 w = self.writings[k]
                 away = (want.middle - w.at) * np.exp(-1j * w.angle)
                 if abs(away.real) < w.width and abs(away.imag) < 1.5 * w.height and _has(w.text, want.text):
@@ -119,14 +119,14 @@ class _Reading:
 
     def others(self) -> None:
         """What is in its place and says something else."""
-        pairs = [(_beyond(want, self.writings[k]), n, k) for n, want in self._missing() for k in self._about(want)
+        pairs = [(_distance_of_middles(want, self.writings[k]), n, k) for n, want in self._missing() for k in self._texts_near(want)
                  if k in self.free and _inside(want, self.writings[k].at, 3.0)]
         for _, n, k in sorted(pairs):
             if n not in self.found and k in self.free and self._meant_for(n, k):
                 want = self.wanted[n]
-                parts = {k, *(j for j in self._about(want) if j in self.free and _inside(want, self.writings[j].at, ONE_PLACE)
+                parts = {k, *(j for j in self._texts_near(want) if j in self.free and _inside(want, self.writings[j].at, ONE_PLACE)
                               and not self._title_of_another(n, j))}
-                order = self._along(list(parts), want)
+                order = self._texts_in_line(list(parts), want)
                 self._take(n, *order, says="".join(self.writings[j].text for j in order).strip())
 
     def _meant_for(self, n: int, k: int) -> bool:
@@ -139,7 +139,7 @@ class _Reading:
             return False
         owners = [m for m, want in self._missing() if m != n and meant(want.text) == meant(text)]
         return not owners or any(j != k and j in self.free and _inside(self.wanted[m], self.writings[j].at, 3.0)
-                                 for m in owners for j in self._about(self.wanted[m]))
+                                 for m in owners for j in self._texts_near(self.wanted[m]))
 
     def _title_of_another(self, n: int, k: int) -> bool:
         """Whether a text is the whole title of something else, which stands too near."""
@@ -153,19 +153,19 @@ class _Reading:
         self.found[n] = FoundText(texts, says)
         self.free.difference_update(texts)
 
-    def _about(self, want: Element, reach: float = 5.0) -> list[int]:
+    def _texts_near(self, want: Element, reach: float = 5.0) -> list[int]:
         """Texts whose middle is not far from the rectangle."""
         return np.flatnonzero(np.abs(self.at - want.middle) < abs(want.points[2] - want.points[0]) / 2 + reach).tolist()
 
 
-def _but(near: list[int], strangers: int) -> Iterator[list[int]]:
+def _all_but_some(near: list[int], strangers: int) -> Iterator[list[int]]:
     """All of some texts, then all but one, and so on; two are left at least."""
     yield near
     for less in range(1, min(strangers, len(near) - 2) + 1 if len(near) <= MOST else 0):
         yield from map(list, combinations(near, len(near) - less))
 
 
-def _same(joined: str, wanted: str, several: bool) -> bool:
+def _says_the_same(joined: str, wanted: str, several: bool) -> bool:
     """Whether texts put together are the wanted one; indices may come in another order, but numbers keep their digits."""
     wanted = wanted.translate(ARROWS) if several and joined == joined.translate(ARROWS) else wanted
     return joined == wanted or (several and sorted(joined) == sorted(wanted) and _digits(joined) == _digits(wanted))
@@ -205,7 +205,7 @@ def _inside(want: Element, z: complex, margin: float) -> bool:
     return bool(-margin <= p.real <= abs(b - a) + margin and -margin <= p.imag <= abs(d - a) + margin)
 
 
-def _beyond(want: Element, w: Writing) -> float:
+def _distance_of_middles(want: Element, w: Writing) -> float:
     """Distance of the middles, less the error that an estimated width may have."""
     along = (w.at - want.middle) * np.exp(-1j * w.angle)
     return float(np.hypot(max(abs(along.real) - 0.25 * w.width, 0.0), along.imag))

@@ -98,7 +98,7 @@ def _runs_near(state: Comparison, rest: Sequence[Left]) -> Iterator[_Trial]:
     unbroken = runs(free, 0.1)
     plain = {r.parts for r in unbroken}
     some = unbroken + [r for r in runs(free, 4.5) if len(r.parts) > 1 and r.parts not in plain]
-    ends = np.array([(r.a, r.b, *_whole(state, r, rest)) for r in some], dtype=complex).reshape(-1, 4)
+    ends = np.array([(r.a, r.b, *_stroke_ends(state, r, rest)) for r in some], dtype=complex).reshape(-1, 4)
     (a, b), (low, high), heads = ends[:, :2].T, ends[:, 2:].T, heads_in(state.space)
     for one, other in ((a, b), (low, high)):
         extend(one, other, list(zip(heads.tip.tolist(), heads.way.tolist(), strict=True)), [])
@@ -120,7 +120,7 @@ def _runs_near(state: Comparison, rest: Sequence[Left]) -> Iterator[_Trial]:
                 yield _Trial(bool(ink.sum() < OWN * abs(d[k] - c[k])), float(off[k]), n, parts[k], ink, take)
 
 
-def _whole(state: Comparison, run: OverlapRun, rest: Sequence[Left]) -> tuple[complex, complex]:
+def _stroke_ends(state: Comparison, run: OverlapRun, rest: Sequence[Left]) -> tuple[complex, complex]:
     """Ends of the strokes of a run: under stretches that other elements have claimed the line goes on."""
     u = (run.b - run.a) / abs(run.b - run.a)
     j = [rest[k].piece for k in run.parts]
@@ -175,7 +175,7 @@ def shapes(state: Comparison, rest: Sequence[Left]) -> None:
         size = float(np.ptp(e.points.real) + np.ptp(e.points.imag))
         by = middles - e.middle
         alike = (np.abs(by) < ELSEWHERE) & (np.abs(sizes - size) < GROWN * size) & (e.kind != "line")
-        trials += [laid for start in (0j, *by[alike].tolist()) if (laid := _laid(state, n, free, rest, start)) is not None]
+        trials += [laid for start in (0j, *by[alike].tolist()) if (laid := _laid_on_free_ink(state, n, free, rest, start)) is not None]
     _assign(state, trials)
 
 
@@ -188,7 +188,7 @@ def _strokes(state: Comparison, free: KnownLines) -> tuple[Points, Numbers]:
     return np.array([b.centre for b in boxes], dtype=complex), np.array([b.width + b.height for b in boxes])
 
 
-def _laid(state: Comparison, n: int, free: KnownLines, rest: Sequence[Left], start: complex) -> _Trial | None:
+def _laid_on_free_ink(state: Comparison, n: int, free: KnownLines, rest: Sequence[Left], start: complex) -> _Trial | None:
     """An element laid on free ink, from its place or from so far beside it; None where less than half of it has ink there."""
     e, whole = state.elements[n], state.whole(n)
     ours, _, base = state.ours([n])

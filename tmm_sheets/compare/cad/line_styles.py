@@ -70,14 +70,14 @@ ByElement = Mapping[int, list[InkStretch]]
 
 def looks(state: Comparison) -> tuple[tuple[LookFinding, ...], tuple[str, ...]]:
     """Elements drawn with a wrong type or width of line, by view, and notes on the drawing as a whole."""
-    ink = {n: rows for n in range(len(state.elements)) if (rows := _along(state, n))}
+    ink = {n: rows for n in range(len(state.elements)) if (rows := _ink_along(state, n))}
     widths, notes = _wrong_widths(state, ink)
     found = sorted((*widths, *_wrong_types(state, ink)),
                    key=lambda x: (-1 if x.view is None else x.view.n, [STYLES[style] for style in x.styles]))
     return tuple(found), (*notes, *_wrong_dashes(ink))
 
 
-def _along(state: Comparison, n: int) -> list[InkStretch]:
+def _ink_along(state: Comparison, n: int) -> list[InkStretch]:
     """The ink along an element whose lines can be judged; of a straight line that is elsewhere as if it were in its place."""
     e, outcome, entities = state.elements[n], state.found[n], state.space.entities
     if e.kind not in ("line", "arc", "circle", "curve") or (e.kind == "circle" and e.fills) or e.style not in STYLES:
@@ -98,7 +98,7 @@ def _along(state: Comparison, n: int) -> list[InkStretch]:
     return [InkStretch(p, q, entities[j]) for p, q, j in zip(a.tolist(), b.tolist(), state.entity[piece].tolist(), strict=True)]
 
 
-def _wrong(state: Comparison, n: int, rows: list[InkStretch], fits: Callable[[Entity], bool]) -> list[InkStretch] | None:
+def _stretches_of_wrong_look(state: Comparison, n: int, rows: list[InkStretch], fits: Callable[[Entity], bool]) -> list[InkStretch] | None:
     """The ink of an element that is none of its own look: none if most is, None where that cannot be told.
 
     Only ink in stretches without another element of the sheet proves anything.
@@ -156,7 +156,7 @@ def _pattern(state: Comparison, n: int, rows: list[InkStretch]) -> Pattern | Non
     whole = max(row.b for row in rows) - min(row.a for row in rows) if n in state.owned else state.whole(n)
     if wanted != "continuous" and of_strokes(solid, whole) == wanted:
         return wanted
-    wrong = _wrong(state, n, rows, lambda e: e.pattern == wanted)
+    wrong = _stretches_of_wrong_look(state, n, rows, lambda e: e.pattern == wanted)
     if not wrong:
         return wanted if wrong is not None else None
     free = state.free(n)
@@ -185,7 +185,7 @@ def _wrong_widths(state: Comparison, ink: ByElement) -> tuple[list[LookFinding],
     """A finding for each view and style; or a note that widths cannot be compared, or are all alike."""
     if all(row.entity.width is None for rows in ink.values() for row in rows):
         return [], [tell("no line has a width of its own: widths are not compared (those of plot styles are not in a DXF file)")]
-    s, t = _typical(state, ink, BROAD), _typical(state, ink, THIN)
+    s, t = _median_width(state, ink, BROAD), _median_width(state, ink, THIN)
     if s is None:
         return [], []
     if t is not None and s < TOLD_APART * t:
@@ -198,27 +198,27 @@ def _wrong_widths(state: Comparison, ink: ByElement) -> tuple[list[LookFinding],
         low, high = (NOT_MAIN * s, np.inf) if e.style in BROAD else (0.0, NOT_THIN * s)
 
         def fits(entity: Entity, low: float = low, high: float = high) -> bool:
-            return low <= _wide(entity) <= high
+            return low <= _width_of(entity) <= high
 
-        if e.style in BROAD | THIN and (wrong := _wrong(state, n, rows, fits)):
-            widths.setdefault((e.view, e.style), {})[n] = _wide(max(wrong, key=lambda row: row.b - row.a).entity)
-    return [_look(state, ink, view, style, _said(style, list(found.values()), s), list(found))
+        if e.style in BROAD | THIN and (wrong := _stretches_of_wrong_look(state, n, rows, fits)):
+            widths.setdefault((e.view, e.style), {})[n] = _width_of(max(wrong, key=lambda row: row.b - row.a).entity)
+    return [_look(state, ink, view, style, _width_remark(style, list(found.values()), s), list(found))
             for (view, style), found in widths.items()], []
 
 
-def _typical(state: Comparison, ink: ByElement, styles: set[str]) -> float | None:
+def _median_width(state: Comparison, ink: ByElement, styles: set[str]) -> float | None:
     """Median width of the ink along elements of some styles, mm."""
     rows = [row for n, of in ink.items() if state.elements[n].style in styles for row in of]
-    found = sorted((_wide(row.entity), row.b - row.a) for row in rows)
+    found = sorted((_width_of(row.entity), row.b - row.a) for row in rows)
     along = np.cumsum([size for _, size in found])
     return found[int(np.searchsorted(along, along[-1] / 2))][0] if found else None
 
 
-def _wide(e: Entity) -> float:
+def _width_of(e: Entity) -> float:
     return DEFAULT_WIDTH if e.width is None else e.width
 
 
-def _said(style: str, widths: list[float], s: float) -> Remark:
+def _width_remark(style: str, widths: list[float], s: float) -> Remark:
     low, high = min(widths), max(widths)
     least, most = Number(f"{low:.2g}"), Number(f"{high:.2g}")
     mm = Remark("", marked("{low} to {high}"), (("low", least), ("high", most))) if high - low >= 0.005 else least

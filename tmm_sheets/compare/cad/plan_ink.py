@@ -131,7 +131,7 @@ class PlanInk:
                   *small.values()]
         heads = [(complex(z.mean()) + far, far / abs(far)) for z in filled
                  if (far := pointed(z)) is not None and abs(far) < MAX_HEAD_MM]
-        symbols = _supports(s2)
+        symbols = _support_strokes(s2)
         s2, of = np.delete(s2, symbols, axis=0), np.delete(of, symbols)
         barbs, more = _open_heads(s2)
         self.a, self.b = (np.delete(z, barbs) for z in s2.T)
@@ -247,7 +247,7 @@ def extend(a: Points, b: Points, heads: Sequence[tuple[complex, complex]], joint
             end[n] = at[there[n].argmax(1)] if len(n) else 0
 
 
-def _supports(s: NDArray[np.complex128]) -> list[int]:
+def _support_strokes(s: NDArray[np.complex128]) -> list[int]:
     """Numbers of hatching strokes of supports and guides, of the lines they hang on, and of the short lines that stand on these."""
     d = s[:, 1] - s[:, 0]
     size = np.abs(d)

@@ -78,14 +78,14 @@ def find(elements: Sequence[Element], space: DrawingSpace, given: Sequence[tuple
         move, there = views[v].stated(place, whole)
         if there:
             moves[v] = move
-            notes.append(tell('"{view}" stands {place}, as --views says').format(view=v.name, place=_where(v, move)))
+            notes.append(tell('"{view}" stands {place}, as --views says').format(view=v.name, place=_place_in_words(v, move)))
         else:
             told_not = tell('"{view}" is not where --views says: {share} % of its lines are there; it was looked for')
             notes.append(told_not.format(view=v.name, share=round(100 * views[v].inked(move))))
     for v, view in views.items():
         if v.n and v not in moves and (found := view.elsewhere()) is not None:
             moves[v] = found
-            notes.append(tell('"{view}" stands {place}; compared there').format(view=v.name, place=_where(v, found)))
+            notes.append(tell('"{view}" stands {place}; compared there').format(view=v.name, place=_place_in_words(v, found)))
     share = {v: view.inked(moves.get(v, Placing())) for v, view in views.items()}
     return Layout(moves, share, tuple(notes))
 
@@ -148,7 +148,7 @@ class _SoughtView:
         return [complex(np.median(near.real), np.median(near.imag))]
 
 
-def _where(view: ElementView, move: Placing) -> str:
+def _place_in_words(view: ElementView, move: Placing) -> str:
     """Where a view is, compared with our sheet, in words."""
     c = view.box.centre
     shift = complex(move(c)) - c

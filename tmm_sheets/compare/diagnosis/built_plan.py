@@ -123,11 +123,11 @@ def drawn_plan(known: KnownSheet, plans: Mapping[str, Plan], view: ElementView, 
             at = [x for x in enumerate(plan.labels) if x[1] in labels] if several else [(shown.k, "")]
             points += [PlanPoint(step, z, z, k, label) for k, label in at if np.isfinite(z := shown.place(step.value, k))]
     # Forces at the points of a mechanism are no plan: only one end of each is a point.
-    hung = sum(len(_hung(e, points)) > 1 for e in shown.vectors)
+    hung = sum(len(_points_hung_on(e, points)) > 1 for e in shown.vectors)
     return replace(shown, points=tuple(points)) if of_links or hung > len(shown.vectors) / 2 else None
 
 
-def _hung(e: Element, points: Sequence[PlanPoint]) -> list[PlanPoint]:
+def _points_hung_on(e: Element, points: Sequence[PlanPoint]) -> list[PlanPoint]:
     """The points of its position that an element hangs on."""
     return [p for p in points if p.step.path in e.on and p.label in ("", e.position)]
 
@@ -136,7 +136,7 @@ def between(e: Element, points: Sequence[PlanPoint]) -> Points:
     """A line through the points it hangs on where these come to lie; it reaches as far over them as it did."""
     a, b = complex(e.points[0]), complex(e.points[-1])
     u = (b - a) / max(abs(b - a), 1e-9)
-    along = [(float(((p.was - a) * np.conj(u)).real), p) for p in _hung(e, points)]
+    along = [(float(((p.was - a) * np.conj(u)).real), p) for p in _points_hung_on(e, points)]
     short = HINGE if e.role == "link" else AT_POINT  # a link ends at the circle of its hinge
     on = sorted((one for one in along if -short < one[0] < abs(b - a) + short), key=itemgetter(0))
     if len(on) < 2:
@@ -164,7 +164,7 @@ def rebuilt(e: Element, points: Sequence[PlanPoint]) -> Element:
         marks = shafts(e.marks, heads, e.points, new)
         return replace(e, points=new, fills=fills, marks=marks)
     at, far = (e.centre, AT_POINT) if e.kind == "circle" else (e.middle, MARK if symbol else BESIDE if e.kind == "text" else 0.0)
-    near = min(_hung(e, points), key=lambda p: abs(p.was - at), default=None)
+    near = min(_points_hung_on(e, points), key=lambda p: abs(p.was - at), default=None)
     return e if near is None or abs(near.was - at) > far else moved(e, Placing(shift=near.now - near.was))
 
 

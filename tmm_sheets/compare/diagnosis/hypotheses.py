@@ -209,7 +209,7 @@ class Hypothesis:
         return self.remark.said()
 
     def at_every_position(self) -> Hypothesis | None:
-        """The same mistake made at every position; None where it was, or cannot be."""
+        """The mistake at every position; None if it already is, or cannot be."""
         if self.at is None or self.kind == "neighbour" or not np.ndim(self.step.value):
             return None
         return replace(self, changes=tuple(replace(change, at=None) for change in self.changes), at=None, everywhere=True)
@@ -232,7 +232,7 @@ def hypotheses(steps: Iterable[Step], k: int, labels: Sequence[str] = (), whole:
     for step in some:
         by_plan.setdefault(step.plan, []).append(step)
     for name, of_plan in by_plan.items():
-        yield from _among(of_plan, k)
+        yield from _other_angular_quantities(of_plan, k)
         if name in MIRRORED:
             yield from _mirrored([s for s in whole if s.plan == name] or of_plan, k)
 
@@ -342,17 +342,17 @@ TURNING = (motion.ANGULAR_VELOCITY, motion.ANGULAR_ACCELERATION)
 COMPUTED = (*TURNING, forces.INERTIA, forces.COUPLE, loads.FORCE, loads.MOMENT)
 
 
-def _among(steps: Sequence[Step], k: int) -> Iterator[Hypothesis]:
+def _other_angular_quantities(steps: Sequence[Step], k: int) -> Iterator[Hypothesis]:
     """The angular velocity or acceleration of another link taken."""
     for rule in TURNING:
         of_rule = [s for s in steps if s.rule is rule]
         for step in of_rule:
             for other in of_rule:
                 if other is not step:
-                    yield Hypothesis("neighbour", "number", step, (Change(step, _taken(other), k),), k, letter_of(other))
+                    yield Hypothesis("neighbour", "number", step, (Change(step, _takes_instead(other), k),), k, letter_of(other))
 
 
-def _taken(other: Step) -> Done:
+def _takes_instead(other: Step) -> Done:
     return lambda again, values: other.value
 
 

@@ -232,7 +232,7 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
     error, rows = errors.of_sum(e.terms)
     # On diagrams the pencil's millimetres stay what they are, whatever the ordinates mean.
     error *= size if e.scale not in found.on_paper else 1 / ratio if e.kind == "result" else 1.0
-    rows = [(s, k, g * size) for s, k, g in rows if _matters(s, k, g * size, error, errors)]
+    rows = [(s, k, g * size) for s, k, g in rows if _depends_noticeably(s, k, g * size, error, errors)]
     exact = e.value * size if e.slope is None else _tilted(e.value, e.slope, found, factors)
     read = e.reading * reading / (ratio if e.kind == "result" else 1.0)
     # A ruler is read no better than its reading is written.
@@ -250,7 +250,7 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
     return judged
 
 
-def _matters(step: Step, k: int, g: complex, error: float, errors: Errors) -> bool:
+def _depends_noticeably(step: Step, k: int, g: complex, error: float, errors: Errors) -> bool:
     """False for what a number depends on by nothing but rounding: a thousandth of the step does a millionth of the error."""
     most = max(errors.error_at(step, k), 1e-3 * abs(complex(value_at(step, k))))
     return isfinite(abs(g)) and abs(g) * most > 1e-6 * error
@@ -326,11 +326,11 @@ def _check_arithmetic(judged: list[JudgedValue], filled: FilledTable, found: Mea
             computed[id(j)] = needs
         elif abs(j.deviation) > CALCULATED * abs(j.exact) + j.line.half_digit:
             j.inconsistent = True
-            j.noted = joined((j.noted, _own_gives(needs, expected)), "; ")
+            j.noted = joined((j.noted, _contradicts_own_numbers(needs, expected)), "; ")
     return computed
 
 
-def _own_gives(own: Iterable[JudgedValue], value: float) -> Remark:
+def _contradicts_own_numbers(own: Iterable[JudgedValue], value: float) -> Remark:
     """That a number does not follow from some of the student's own, which give another value."""
     numbers = joined(Remark("", "{quantity} = {value}", (
         ("quantity", j.entry.quantity), ("value", Number(rounded(j.line.value, 5))))) for j in own)
@@ -361,16 +361,16 @@ def _chains(evidence: Evidence, own: OwnNumbers, computed: Mapping[int, list[Jud
         tried += 1
         found = explanation(evidence, int(first), most_is_wrong) if tried <= MOST else None
         if found is not None:
-            open_[_told(evidence, start, found, beyond)] = False
+            open_[_tell_mistake(evidence, start, found, beyond)] = False
             if found.then is not None and (second := _shows(evidence, start, found.then)) is not None:
                 second.starts, second.follows = True, None
-                open_[[judged.index(second), *_told(evidence, second, found.then, beyond)]] = False
+                open_[[judged.index(second), *_tell_mistake(evidence, second, found.then, beyond)]] = False
     for j in judged:
         if j.verdict == "red" and not j.starts and j.follows is None:
             j.follows = _own_reason(own, j, computed)
 
 
-def _told(evidence: Evidence, start: JudgedValue, found: Explanation, beyond: float) -> list[int]:
+def _tell_mistake(evidence: Evidence, start: JudgedValue, found: Explanation, beyond: float) -> list[int]:
     """Tell a mistake at the number it was looked for; the numbers that follow from it."""
     start.mistake, start.wrong = found.mistake, found.wrong
     return list(_follow(evidence, start, found, beyond))
@@ -444,7 +444,7 @@ def _against_own(own: OwnNumbers, left: set[int]) -> None:
         made = own.value(j) if judgeable else None
         if made is not None and seen.isdisjoint(made.known_in_part) and _contradicts(j, made, beyond):
             j.off_own = j.starts = True
-            j.noted = _own_gives([m for m, _ in made.reasons[:MOST_TOLD]], j.exact + made.expected)
+            j.noted = _contradicts_own_numbers([m for m, _ in made.reasons[:MOST_TOLD]], j.exact + made.expected)
         if j.verdict == "red":
             seen |= {place_of(step, k) for step, k, _ in j.entry.terms}
 

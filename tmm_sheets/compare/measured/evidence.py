@@ -197,7 +197,7 @@ class Evidence:
 
     def reached(self, found: Explanation, i: int) -> bool:
         """Whether a number depends on what was done wrong, also where that happens to leave it as it is."""
-        return bool(found.shares[i]) or any(change.step in self._before(i) for change in found.changes)
+        return bool(found.shares[i]) or any(change.step in self._steps_behind(i) for change in found.changes)
 
     def after(self, shares: Floats, lines: Sequence[int] | None = None) -> Floats:
         """What is left of all numbers, or of some, when a further mistake makes ``shares`` of them.
@@ -236,7 +236,7 @@ class Evidence:
         off = (own @ rng.normal(0, 0.5, (len(own), 2, 1)))[:, :, 0] @ (1, 1j)
         return Change(step, displaced(off if np.ndim(step.value) else off[0]))
 
-    def _before(self, i: int) -> dict[Step, None]:
+    def _steps_behind(self, i: int) -> dict[Step, None]:
         """Steps of the linkage that a number goes back to."""
         if i not in self._made:
             made = self.made_of([step for step, _, _ in self.judged[i].entry.terms])

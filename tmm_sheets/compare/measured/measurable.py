@@ -292,7 +292,7 @@ def size(title: str, label: str, name: str, unit: str, k: int, step: Step, calle
 
 
 def magnitude(entry: Measurable) -> Measurable:
-    """The same entry asked for without its sign."""
+    """An entry without its sign."""
     sign = -1 if entry.value < 0 else 1
     return replace(entry, signed=False, value=abs(entry.value), terms=tuple((s, k, sign * g) for s, k, g in entry.terms))
 

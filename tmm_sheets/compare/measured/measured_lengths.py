@@ -116,7 +116,7 @@ def template(project: Project, folder: Path, everything: bool, say: Callable[[st
 
 
 def table(project: Project) -> bytes:
-    """The same file, without a word."""
+    """The template of all main numbers as bytes, without a message."""
     return measured_file.template(project.variant.called, measurables(project, lambda what: None))
 
 
@@ -211,7 +211,7 @@ def summary_of(judged: list[JudgedValue], filled: measured_file.FilledTable) -> 
     return [_counted(judged, filled), *told_last]
 
 
-def _own(judged: list[JudgedValue]) -> dict[str, int]:
+def _verdict_counts(judged: list[JudgedValue]) -> dict[str, int]:
     """How many numbers got each verdict, of those that follow from no mistake."""
     return {v: sum(j.verdict == v for j in judged if j.follows is None) for v in ("green", "amber", "red")}
 
@@ -222,7 +222,7 @@ def _counted(judged: list[JudgedValue], filled: measured_file.FilledTable) -> st
                   "{n} numbers: {green} green, {amber} amber, {red} red, {follow} following from an earlier mistake; {empty} "
                   "left empty",
                   len(judged))
-    return said.format(n=len(judged), **_own(judged), follow=sum(j.follows is not None for j in judged), empty=filled.empty)
+    return said.format(n=len(judged), **_verdict_counts(judged), follow=sum(j.follows is not None for j in judged), empty=filled.empty)
 
 
 def mistakes_as_told(judged: list[JudgedValue]) -> list[list[JudgedValue]]:
@@ -268,7 +268,7 @@ def _too_many(judged: list[JudgedValue]) -> bool:
 
 def advice(judged: list[JudgedValue]) -> list[str]:
     """What to do now."""
-    starts, own = len(mistakes_as_told(judged)), _own(judged)
+    starts, own = len(mistakes_as_told(judged)), _verdict_counts(judged)
     if _too_many(judged):
         return [codes.ANOTHER_MECHANISM().said()]
     if starts:
@@ -286,7 +286,7 @@ def _remark(j: JudgedValue) -> Remark:
         return any_of(j.wrong)
     instead = codes.INSTEAD_BY if j.tolerance > EXACT else codes.INSTEAD
     number = instead(measured=_measured(j), exact=_exact(j), times=Number(f"{abs(j.deviation) / j.tolerance:.3g}"))
-    begins, off = None, _off(j)
+    begins, off = None, _misplacement(j)
     if j.mistake is not None:
         name = letter_of(j.mistake.step)
         begins = codes.STARTS_WITH(step=name) if off is None else codes.POINT_MOVED(point=name, distance=Number(rounded(off, 2)))
@@ -298,7 +298,7 @@ def _sentence(m: Mistake) -> str:
     return sentence(m.step, m.place[1], lambda x: x / (m.mu or 1.0), "mm" if m.mu else "")
 
 
-def _off(j: JudgedValue) -> float | None:
+def _misplacement(j: JudgedValue) -> float | None:
     """How far a point was misplaced, mm; None for what is no point on paper."""
     m = j.mistake
     return None if m is None or not m.mu or m.step.rule.gives not in ("point", "vector") else abs(complex(*m.moved)) / m.mu
@@ -336,7 +336,7 @@ def _record(j: JudgedValue, follows: FindingRecord | None, more: int = 0) -> Fin
     step = h.step if h is not None else j.mistake.step if j.mistake is not None else e.terms[-1][0] if e.terms else None
     remark = (_remark(j) if j.starts or j.verdict != "green" else j.noted) or codes.IN_REACH()
     brief = codes.THROUGHOUT(n=Number(str(more + 1))) if more else h.remark if h is not None else None
-    on_paper, off = e.kind == "length", _off(j)
+    on_paper, off = e.kind == "length", _misplacement(j)
     beside = {"row": e.id, "quantity": e.quantity, "unit": e.unit, "line": j.line.line, "deviation": j.deviation,
               "percent": j.percent, "tolerance": j.tolerance if isfinite(j.tolerance) and not on_paper else None,
               "kind": h.kind if h is not None else None, "mistake": h.words if h is not None else None, "off_mm": off}

@@ -87,7 +87,7 @@ def _shifted(evidence: Evidence, i: int, rows: Sequence[int], by: int, words: st
     of = dict((b, a) if by < 0 else (a, b) for a, b in pairwise(rows))
     for fits, block in groupby(rows, lambda n: n in of and _fits(evidence, n, of[n])):
         run = [*block]
-        off = [k for k, n in enumerate(run) if _off(evidence, n)]
+        off = [k for k, n in enumerate(run) if _is_off(evidence, n)]
         # What is right where it stands has not been shifted.
         if fits and i in run and len(off) >= SEVERAL and off[0] <= run.index(i) <= off[-1]:
             run = run[off[0]:off[-1] + 1]
@@ -95,7 +95,7 @@ def _shifted(evidence: Evidence, i: int, rows: Sequence[int], by: int, words: st
             for h, found in _written(evidence, i, {n: of[n] for n in run}, words, said):
                 # Where the column was cut the number of a row that is not there came in.
                 cut = rows[rows.index(run[0 if by < 0 else -1]) + by]
-                if _off(evidence, cut):
+                if _is_off(evidence, cut):
                     found.shares[cut] = evidence.left[cut]
                 yield h, found
 
@@ -103,7 +103,7 @@ def _shifted(evidence: Evidence, i: int, rows: Sequence[int], by: int, words: st
 def _written(evidence: Evidence, i: int, of: Mapping[int, int], words: str, other: str) -> Iterator[tuple[
         Hypothesis, Explanation]]:
     """That rows have the numbers of others; nothing where that leaves much of one of them, or the number was hardly off."""
-    off = [n for n in of if _off(evidence, n)]
+    off = [n for n in of if _is_off(evidence, n)]
     if i in off and len(off) >= min(len(of), 2) and all(_fits(evidence, n, m) for n, m in of.items()):
         shares, doubt = np.zeros((2, len(evidence.judged)))
         before = after = 0.0
@@ -111,7 +111,7 @@ def _written(evidence: Evidence, i: int, of: Mapping[int, int], words: str, othe
             shares[n] = _meant(evidence, m) - _meant(evidence, n)
             doubt[n] = evidence.allowed[m]
             before += float(loss(evidence.left[n] / evidence.allowed[n]))
-            after += float(loss(_apart(evidence, n, m) / evidence.allowed[m]))
+            after += float(loss(_row_distance(evidence, n, m) / evidence.allowed[m]))
         h = Hypothesis("neighbour", words, evidence.judged[i].entry.terms[-1][0], (), other=Own(other))
         yield h, Explanation((), shares, doubt, before - after)
 
@@ -122,18 +122,18 @@ def _meant(evidence: Evidence, n: int) -> float:
     return j.exact + j.deviation - float(evidence.left[n])
 
 
-def _apart(evidence: Evidence, n: int, m: int) -> float:
+def _row_distance(evidence: Evidence, n: int, m: int) -> float:
     """How far the number of a row is from that of another."""
     return evidence.judged[m].entry.off(evidence.judged[n].line.value, _meant(evidence, m))
 
 
-def _off(evidence: Evidence, n: int) -> bool:
+def _is_off(evidence: Evidence, n: int) -> bool:
     return bool(abs(evidence.left[n]) > REACH * evidence.allowed[n])
 
 
 def _fits(evidence: Evidence, n: int, m: int) -> bool:
     """Whether a row may well have the number of another."""
-    return bool(np.isfinite(evidence.allowed[[n, m]]).all() and abs(_apart(evidence, n, m)) <= REACH * evidence.allowed[m])
+    return bool(np.isfinite(evidence.allowed[[n, m]]).all() and abs(_row_distance(evidence, n, m)) <= REACH * evidence.allowed[m])
 
 
 ENOUGH = 16.0
@@ -153,14 +153,14 @@ def done_otherwise(evidence: Evidence, i: int) -> Explanation | None:
     if best <= MOSTLY * alone or (best < ENOUGH and evidence.judged[i].entry.kind != "sense"):
         return None
     # Of equally good ones the more usual first.
-    equal = [_as_often(evidence, h, e) for h, e in found if e.score >= EQUAL * best]
+    equal = [_once_or_everywhere(evidence, h, e) for h, e in found if e.score >= EQUAL * best]
     best = max(e.score for _, e in equal)
     equal = [(h, e) for h, e in equal if e.score >= EQUAL * best]
     first = equal[0][1]
     return replace(first, wrong=tuple(h for h, _ in equal[:TOLD]))
 
 
-def _as_often(evidence: Evidence, h: Hypothesis, once: Explanation) -> tuple[Hypothesis, Explanation]:
+def _once_or_everywhere(evidence: Evidence, h: Hypothesis, once: Explanation) -> tuple[Hypothesis, Explanation]:
     """A mistake made at one position, or at all of them where numbers at the others tell that."""
     if (often := h.at_every_position()) is None:
         return h, once
@@ -221,7 +221,7 @@ def displaced_step(evidence: Evidence, i: int, most_is_wrong: bool = False) -> E
     candidates = [_mistake(evidence, m.place, exact=True) for m in candidates[:TRIED]]
     alone = float(loss(evidence.left[i] / evidence.allowed[i]))
     own = evidence.judged[i].entry.head
-    good = [m for m in candidates if m.score > alone * MOSTLY and _helps(evidence, m, i)]
+    good = [m for m in candidates if m.score > alone * MOSTLY and _explains_two(evidence, m, i)]
     if not good:
         return None
     best = max(m.score for m in good)
@@ -236,7 +236,7 @@ def displaced_step(evidence: Evidence, i: int, most_is_wrong: bool = False) -> E
     return Explanation((moved(m.step, m.place, m.moved),), shares, doubt, m.score, mistake=m)
 
 
-def _usual(evidence: Evidence, place: Place) -> npt.NDArray[np.float64]:
+def _usual_size(evidence: Evidence, place: Place) -> npt.NDArray[np.float64]:
     """Of what no number sees nothing is told: mistakes are some millimetres, a number is not wrong by more than itself."""
     of = evidence.steps[place]
     mu = evidence.errors.scale(of) if of.rule.gives in DRAWN else 0.0
@@ -251,7 +251,7 @@ def _mistake(evidence: Evidence, place: Place, exact: bool = False) -> Mistake:
     """
     x = np.zeros(2)
     lines, gradient = evidence.by_place[place]
-    of, mu, usual = evidence.steps[place], evidence.errors.scale(evidence.steps[place]), _usual(evidence, place)
+    of, mu, usual = evidence.steps[place], evidence.errors.scale(evidence.steps[place]), _usual_size(evidence, place)
     rows, aims = gradient / evidence.allowed[lines, None], evidence.left[lines] / evidence.allowed[lines]
     best = Mistake(place, of, x, np.eye(2), 0.0, mu)
     for _ in range(6 if exact else 9):
@@ -282,7 +282,7 @@ def _can_be_wrong(evidence: Evidence, place: Place) -> bool:
     return place in evidence.heads or evidence.errors.error_at(evidence.steps[place], place[1]) > 0
 
 
-def _helps(evidence: Evidence, mistake: Mistake, i: int) -> bool:
+def _explains_two(evidence: Evidence, mistake: Mistake, i: int) -> bool:
     """True when a mistake explains most of the number it was looked for, and of another one that is not in order.
 
     A little of much that other mistakes have spoilt explains nothing, nor does a great displacement that only one number shows.
@@ -298,7 +298,7 @@ def _helps(evidence: Evidence, mistake: Mistake, i: int) -> bool:
     lines = evidence.by_place[mistake.place][0]
     gain = loss(evidence.left[lines] / evidence.allowed[lines]) - loss(
         (evidence.left[lines] - shares) / evidence.allowed[lines])
-    far = float(np.sum((_usual(evidence, mistake.place) @ mistake.moved) ** 2))
+    far = float(np.sum((_usual_size(evidence, mistake.place) @ mistake.moved) ** 2))
     return bool(gain[lines != i].sum() > max(far, WITNESSED * gain[lines == i].sum()))
 
 
@@ -358,7 +358,7 @@ def _made_good(evidence: Evidence, i: int) -> Iterator[tuple[Hypothesis, Hypothe
             second = h.at_every_position() if everywhere else h
             if second is not None and second.kind not in (first.kind, "neighbour") and second.step is not first.step:
                 both = _both(first, second)
-                if _leaves_little_of(evidence, spoilt[:1], both) and _leaves_little_of(evidence, spoilt, both):
+                if _explains_all(evidence, spoilt[:1], both) and _explains_all(evidence, spoilt, both):
                     yield first, second
 
 
@@ -372,8 +372,8 @@ def _in_one_plan(evidence: Evidence, i: int) -> Iterator[tuple[Hypothesis, Hypot
         return
     for first, second in _pairs(evidence, i, here):
         both = _both(first, second)
-        if evidence.leaves_little(i, both) and _leaves_little_of(evidence, here, both) and not any(
-                _leaves_little_of(evidence, here, h) for h in (first, second)):
+        if evidence.leaves_little(i, both) and _explains_all(evidence, here, both) and not any(
+                _explains_all(evidence, here, h) for h in (first, second)):
             yield first, second
 
 
@@ -392,7 +392,7 @@ def _pairs(evidence: Evidence, i: int, here: Sequence[int]) -> Iterator[tuple[Hy
             yield some[a], some[b]
 
 
-def _leaves_little_of(evidence: Evidence, lines: Sequence[int], h: Hypothesis) -> bool:
+def _explains_all(evidence: Evidence, lines: Sequence[int], h: Hypothesis) -> bool:
     """Whether all these numbers are nearly what they would be with a mistake."""
     shares = evidence.shares_of(h, lines)
     return all(isfinite(share) and abs(evidence.judged[n].apart(evidence.left[n] - share)) <= REACH * np.hypot(

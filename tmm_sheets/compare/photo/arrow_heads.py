@@ -176,9 +176,9 @@ class _End:
 
     def sides(self) -> list[_Likeness]:
         """The likeness of either side to that of a head in its place."""
-        return [next(self._only(side).likeness(NEAR, SIZES)) for side in (-1, 1)]
+        return [next(self._one_side(side).likeness(NEAR, SIZES)) for side in (-1, 1)]
 
-    def _only(self, side: int) -> _End:
+    def _one_side(self, side: int) -> _End:
         """It, seen to one side of its stroke, -1 or 1, alone."""
         return replace(self, known=self.known & (side * (ASIDE - self.aside) > 0))
 
@@ -324,18 +324,18 @@ def with_heads(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any,
     out = list(traces)
     for k, head in found.items():
         t = traces[k]
-        shares = any(_together(t.element, e, -1) for e in seen if e is not t.element)
+        shares = any(_share_an_end(t.element, e, -1) for e in seen if e is not t.element)
         if t.element.number in thin and (head != "there" or shares):
             # What lies elsewhere is a thin line of its own.
             out[k] = replace(t, head="left out") if t.deviation <= ELSEWHERE else InkTrace(t.element, "missing")
         else:
             out[k] = replace(t, head="unknown" if head == "absent" and shares else head)
     told = [t.element for t in out if t.head == "reversed"]
-    doubted = {t.element.number for t in out if t.head == "doubled" and any(_together(t.element, e, 0) for e in told)}
+    doubted = {t.element.number for t in out if t.head == "doubled" and any(_share_an_end(t.element, e, 0) for e in told)}
     return [replace(t, head="unknown") if t.element.number in doubted else t for t in out]
 
 
-def _together(e: Element, other: Element, end: int) -> bool:
+def _share_an_end(e: Element, other: Element, end: int) -> bool:
     """Whether two vectors of one direction have this end, 0 or -1, in one place: a head there may be either's."""
     ways = [v.points[-1] - v.points[0] for v in (e, other)]
     alike = (ways[0] / ways[1]).real / abs(ways[0] / ways[1]) > ON_LINE

@@ -70,7 +70,7 @@ def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, owners: 
     level
         Darkness of ink.
     """
-    offsets, at = _about(e, s)
+    offsets, at = _search_strip(e, s)
     expected = expected_ink(e)
     about = np.abs(offsets) <= 0.5
     near = s.points[:, None] + s.normals[:, None] * offsets[about]
@@ -79,7 +79,7 @@ def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, owners: 
         # There is ink where it belongs, only it cannot be told from others'.
         return InkTrace(e, "dense", covered=float(here.any(1).mean()), at=e.points)
     profile, unknown = smoothed(sample(left, at)), sample(wiped, at) > 100
-    found = _elsewhere(e, s, profile, unknown, offsets, level)
+    found = _best_displaced(e, s, profile, unknown, offsets, level)
     if found is not None:
         return found
     # Hidden in its own place, or nowhere?
@@ -95,7 +95,7 @@ def better_match(t: InkTrace, s: Stations, left: Any, wiped: Any, ink: Any, owne
 
     ``t`` and ``s`` are its trace there and its stations, ``owners`` tells who is drawn where; the rest is as for :func:`displaced`.
     """
-    offsets, at = _about(t.element, s)
+    offsets, at = _search_strip(t.element, s)
     near = s.points[:, None] + s.normals[:, None] * offsets
     drawn = owners.others(t.element.number, near)
     others = cv2.dilate(drawn.astype(np.uint8), np.ones((1, BAND), np.uint8)) > 0
@@ -103,10 +103,10 @@ def better_match(t: InkTrace, s: Stations, left: Any, wiped: Any, ink: Any, owne
     profile = smoothed(np.where(own, sample(ink, at), sample(left, at)), drawn)
     unknown = ~own & (sample(wiped, at) > 100)
     if t.darkness:
-        darker = _elsewhere(t.element, s, profile, unknown, offsets, DARKER * t.darkness)
+        darker = _best_displaced(t.element, s, profile, unknown, offsets, DARKER * t.darkness)
         if darker is not None and darker.covered >= NEARLY_ALL:
             return darker
-    fuller = _elsewhere(t.element, s, profile, unknown, offsets, level)
+    fuller = _best_displaced(t.element, s, profile, unknown, offsets, level)
     if fuller is None or fuller.covered < max(NEARLY_ALL, t.covered + FULLER) or fuller.darkness < t.darkness / DARKER:
         return None
     return fuller
@@ -116,14 +116,14 @@ def beside(t: InkTrace, s: Stations, ink: Any, lines: Any, taken: Any, owners: O
     """The trace of a straight line that lies in one stroke with others, where ink of none has its whole length beside; or None.
 
     ``lines`` is where what was found is drawn, 255 there, ``taken`` the same with room to spare; the rest is as for
-    :func:`rather_elsewhere`.
+    :func:`rather_best_displaced`.
     """
-    offsets, at = _about(t.element, s)
+    offsets, at = _search_strip(t.element, s)
     drawn = owners.others(t.element.number, s.points[:, None] + s.normals[:, None] * offsets)
     profile = smoothed(sample(ink, at), drawn)
-    apart = _apart(profile, sample(lines, at, nearest=True) > 0, drawn, offsets, level)
+    apart = _reachable_places(profile, sample(lines, at, nearest=True) > 0, drawn, offsets, level)
     unknown = np.where(np.abs(offsets) <= BROAD, ~apart & (profile > level), sample(taken, at) > 100)
-    found = _elsewhere(t.element, s, np.where(unknown, 0, profile), unknown, offsets, level, PARTED)
+    found = _best_displaced(t.element, s, np.where(unknown, 0, profile), unknown, offsets, level, PARTED)
     if found is None or found.at is None or found.covered < NEARLY_ALL or found.deviation < LEFT:
         return None
     begin, end = found.at - t.element.points
@@ -144,7 +144,7 @@ def beside(t: InkTrace, s: Stations, ink: Any, lines: Any, taken: Any, owners: O
     return replace(found, status="beside") if length >= LEAST / 2 and np.ptp(share[apart]) * t.element.length >= LEAST else None
 
 
-def _apart(profile: Any, found: Any, drawn: Any, offsets: Floats, level: float) -> Any:
+def _reachable_places(profile: Any, found: Any, drawn: Any, offsets: Floats, level: float) -> Any:
     """Where paper separates places across a line from the stroke it is in, and no other line, nor its blur, is between them.
 
     ``found`` is where lines were found, ``drawn`` where others belong.
@@ -164,14 +164,14 @@ def _apart(profile: Any, found: Any, drawn: Any, offsets: Floats, level: float) 
     return out
 
 
-def _about(e: Element, s: Stations) -> tuple[Floats, Any]:
+def _search_strip(e: Element, s: Stations) -> tuple[Floats, Any]:
     """How far an element is sought to either side, mm, and the places there, pixels."""
     reach = min(FARTHEST_OFF, max(0.6 * e.length, 3.0))
     offsets = np.arange(-reach, reach + STEP / 2, STEP)
     return offsets, pixels(s.points[:, None] + s.normals[:, None] * offsets)
 
 
-def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Floats, level: float,
+def _best_displaced(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Floats, level: float,
                least: float = KNOWN) -> InkTrace | None:
     """The element where the ink that is left fits it best, None when nothing fits; ``least`` of it, a share, must be seen."""
     expected, reach = expected_ink(e), float(offsets[-1])
@@ -306,12 +306,12 @@ def _regions(left: Any, level: float, straight: bool) -> list[ExtraInk]:
         w, h, mine = r.box.width, r.box.height, labels[r.here] == r.label
         if hypot(w, h) < EXTRA or area[r.label] < LEAST_WIDTH * EXTRA * SCALE**2:
             continue
-        if not straight or _across(r.points(mine, scale)) <= STRAIGHT:
+        if not straight or _spread_across(r.points(mine, scale)) <= STRAIGHT:
             points = r.points(mine & (amount[r.here] > 0), scale)
             out.append(ExtraInk(r.middle, w, h, hypot(w, h), points[:: len(points) // POINTS + 1]))
     return out
 
 
-def _across(z: Points) -> float:
+def _spread_across(z: Points) -> float:
     """Standard deviation of points across their longer direction, mm."""
     return float(np.sqrt(max(np.linalg.eigvalsh(np.cov(z.real, z.imag))[0], 0.0)))

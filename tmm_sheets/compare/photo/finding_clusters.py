@@ -99,7 +99,7 @@ def places(findings: Sequence[PhotoFinding], extra: Sequence[ExtraInk]) -> list[
     beside: list[list[ExtraInk]] = [[] for _ in groups]
     alone: list[ExtraInk] = []
     for x in extra:
-        for some, belongs in ((own, _on), (beside, _near), (beside, _letters)):
+        for some, belongs in ((own, _is_ink_of), (beside, _runs_along), (beside, _letters)):
             home = next((k for k, g in enumerate(groups) if any(belongs(f, x) for f in g)), None)
             if home is not None:
                 some[home].append(x)
@@ -168,7 +168,7 @@ def _share(points: Points, line: Points, within: float) -> float:
     return float((np.abs(points[:, None] - line).min(1) <= within).mean())
 
 
-def _on(f: PhotoFinding, x: ExtraInk) -> bool:
+def _is_ink_of(f: PhotoFinding, x: ExtraInk) -> bool:
     """Whether ink is that by which an element was found elsewhere."""
     at = f.trace.at
     if at is None or f.element.kind == "text" or f.trace.deviation <= f.tolerance:
@@ -176,7 +176,7 @@ def _on(f: PhotoFinding, x: ExtraInk) -> bool:
     return _share(x.points, sampled(at, SAMPLING)[0], ON) >= MOSTLY
 
 
-def _near(f: PhotoFinding, x: ExtraInk) -> bool:
+def _runs_along(f: PhotoFinding, x: ExtraInk) -> bool:
     """Whether ink runs along an element that is off, so that it may be its own."""
     e = f.element
     if e.kind not in ("line", "arc", "circle", "curve") or (e.kind == "circle" and e.fills):
@@ -185,7 +185,7 @@ def _near(f: PhotoFinding, x: ExtraInk) -> bool:
     away = np.abs(x.points[:, None] - line)
     if (away.min(1) <= FARTHEST_OFF).mean() < ALONG:
         return False
-    way = _way(x.points)
+    way = _main_direction(x.points)
     return bool(abs((way * np.conj(normal[away.argmin(1)])).real).mean() < 0.5)  # within some 30 degrees of its direction
 
 
@@ -200,7 +200,7 @@ def _letters(f: PhotoFinding, x: ExtraInk) -> bool:
     return alike and abs(x.middle - f.element.middle) <= MOVED
 
 
-def _way(points: Points) -> complex:
+def _main_direction(points: Points) -> complex:
     """The direction in which points lie."""
     _, way = np.linalg.eigh(np.cov(points.real, points.imag))
     return complex(way[0, 1], way[1, 1])
@@ -212,16 +212,16 @@ def _likely(findings: Sequence[PhotoFinding], ink: Sequence[ExtraInk]) -> tuple[
     Near the end that stays others hide its ink. Its own place must be one where it cannot be told from others.
     """
     z = np.concatenate([x.points for x in ink])
-    if np.std((z * np.conj(way := _way(z))).imag) > IN_LINE:
+    if np.std((z * np.conj(way := _main_direction(z))).imag) > IN_LINE:
         return ()
     along = (z * np.conj(way)).real
     ends = z[[along.argmin(), along.argmax()]]
     lines = [f for f in findings if f.element.kind == "line" and len(f.element.points) == 2]
-    some = [f for f in lines if _askew(f.element.points, ends, way) and _not_sure(f, lines)]
+    some = [f for f in lines if _is_turned_about_end(f.element.points, ends, way) and _may_be_others_ink(f, lines)]
     return tuple(some) if len({(f.element.view, f.element.name, f.element.position) for f in some}) <= EITHER else ()
 
 
-def _not_sure(f: PhotoFinding, lines: Sequence[PhotoFinding]) -> bool:
+def _may_be_others_ink(f: PhotoFinding, lines: Sequence[PhotoFinding]) -> bool:
     """Whether it cannot be told that a line stands in its own place: the ink there may be that of others."""
     if f.trace.status in ("dense", "shared", "covered") or f.trace.head in ("absent", "left out"):
         return True
@@ -237,7 +237,7 @@ def _not_sure(f: PhotoFinding, lines: Sequence[PhotoFinding]) -> bool:
     return bool(under.mean() >= UNDER)
 
 
-def _askew(line: Points, ends: Points, way: complex) -> bool:
+def _is_turned_about_end(line: Points, ends: Points, way: complex) -> bool:
     """Whether a straight stroke in the direction ``way`` may be a line with one end in its place."""
     length = abs(line[-1] - line[0])
     for stays, other in ((line[0], line[-1]), (line[-1], line[0])):
@@ -252,18 +252,18 @@ def _pieces(some: Sequence[ExtraInk]) -> list[list[ExtraInk]]:
     """Pieces of ink, those that are one thing to the eye together."""
     groups: list[list[ExtraInk]] = []
     for x in some:
-        same = [g for g in groups if any(_one_thing(x, y) for y in g)]
+        same = [g for g in groups if any(_are_one_stroke(x, y) for y in g)]
         groups = [g for g in groups if all(g is not h for h in same)] + [[x, *(y for g in same for y in g)]]
     return groups
 
 
-def _one_thing(x: ExtraInk, y: ExtraInk) -> bool:
+def _are_one_stroke(x: ExtraInk, y: ExtraInk) -> bool:
     """Whether two pieces of ink lie side by side or are of one straight stroke."""
     gap = float(np.abs(x.points[:, None] - y.points).min())
     if gap <= NEXT or gap > GAP:
         return gap <= NEXT
     both = np.concatenate((x.points, y.points))
-    return bool(np.std((both * np.conj(_way(both))).imag) <= IN_LINE)
+    return bool(np.std((both * np.conj(_main_direction(both))).imag) <= IN_LINE)
 
 
 def _circles(findings: Sequence[PhotoFinding], ink: Sequence[ExtraInk]) -> list[tuple[PhotoFinding, list[ExtraInk]]]:
@@ -274,13 +274,13 @@ def _circles(findings: Sequence[PhotoFinding], ink: Sequence[ExtraInk]) -> list[
     out: list[tuple[PhotoFinding, list[ExtraInk]]] = []
     rest = list(ink)
     about = [f for f in findings if f.element.kind == "circle" and not f.element.fills and f.element.radius > LEAST_RADIUS]
-    while found := max((c for f in about if (c := _about(f, rest)) is not None), key=lambda c: len(c[1]), default=None):
+    while found := max((c for f in about if (c := _circle_elsewhere(f, rest)) is not None), key=lambda c: len(c[1]), default=None):
         out.append(found)
         rest = [x for x in rest if not any(x is y for y in found[1])]
     return out
 
 
-def _about(f: PhotoFinding, ink: Sequence[ExtraInk]) -> tuple[PhotoFinding, list[ExtraInk]] | None:
+def _circle_elsewhere(f: PhotoFinding, ink: Sequence[ExtraInk]) -> tuple[PhotoFinding, list[ExtraInk]] | None:
     """The circle about the centre of another on which most ink lies, None where that is too little of one to be told."""
     e = f.element
     away = [np.abs(x.points - e.centre) for x in ink]

@@ -136,10 +136,10 @@ def check(m: Map, straight: Map, sides: Seen, ink: Any, lines: ProfileLines, lev
     some = (across.max(1) > level) & in_picture(m, lines.points)
     seen = Seen(straight.to_picture(at + lines.normals * o), lines.points, lines.normals, good.astype(float))
     met = _on_sides(m, straight, sides, ink, level, scale)
-    astray, judged = _astray(lines, good, some)
+    astray, judged = _displaced_cells(lines, good, some)
     shares = np.array([part.mean() for part in np.split(met, 4)])
-    lost = np.array([z for z in astray if not _side_seen(z, sides.sheet, met)], complex)
-    found = FitCheck(float(good.mean()), astray, lost, judged, _between_halves(m, sides, seen), _together(lines, o, good), shares,
+    lost = np.array([z for z in astray if not _frame_is_seen(z, sides.sheet, met)], complex)
+    found = FitCheck(float(good.mean()), astray, lost, judged, _between_halves(m, sides, seen), _common_error(lines, o, good), shares,
                      np.zeros(0, complex), 0.0, strips_adrift(lines, good, some, shares), rim_error(m, sides))
     if not found.moored:  # refused without that
         return found
@@ -167,7 +167,7 @@ def patches_shifted(seen: Seen, m: Map) -> tuple[Points, float]:
     return z[some], float(np.median(np.abs(by[some]))) if some.any() else 0.0
 
 
-def _together(lines: ProfileLines, o: Floats, good: Any) -> float:
+def _common_error(lines: ProfileLines, o: Floats, good: Any) -> float:
     """How far lines near each other are off together, mm: the root mean square of the medians of parts of the sheet."""
     upright = np.abs(lines.normals.real) > np.sqrt(0.5)
     along = o * np.sign(np.where(upright, lines.normals.real, lines.normals.imag))  # to the right or up
@@ -185,7 +185,7 @@ def _on_sides(m: Map, straight: Map, sides: Seen, ink: Any, level: float, scale:
     return (strength > level) & (np.abs(o) < IN_PLACE)
 
 
-def _astray(lines: ProfileLines, good: Any, some: Any) -> tuple[Points, int]:
+def _displaced_cells(lines: ProfileLines, good: Any, some: Any) -> tuple[Points, int]:
     """Middles of the cells whose lines are elsewhere, and how many cells could be judged."""
     columns, rows = CELLS
     i = np.clip(((lines.points.real - FRAME.x0) / FRAME.width * columns).astype(int), 0, columns - 1)
@@ -238,7 +238,7 @@ def rim_error(m: Map, sides: Seen) -> float:
     return max((abs(float(np.median(o[s]))) for o, s in zip(off, seen, strict=True) if s.sum() > RUN / 2), default=0.0)
 
 
-def _side_seen(z: complex, p: Points, met: Any) -> bool:
+def _frame_is_seen(z: complex, p: Points, met: Any) -> bool:
     """Whether the frame is seen beside a cell about ``z``; cells that are not at the frame have nothing to be seen."""
     reach = complex(FRAME.width / CELLS[0], FRAME.height / CELLS[1])
     d = p - z

@@ -269,7 +269,7 @@ def frame_quads(ink: Any, lines: ProfileLines, level: float, long: tuple[Floats,
 
 
 def three_sided(ink: Any, lines: ProfileLines, level: float, long: tuple[Floats, Floats]) -> list[FrameGuess]:
-    """The same of which three sides are long lines; where the fourth is follows from the proportions of the sheet.
+    """Quadrilaterals with three long lines as sides; the fourth follows from the proportions of the sheet.
 
     It does for a camera whose axis meets the middle of the picture, for several focal lengths. ``reach`` is 0: the fourth side
     is not to be followed. Parameters as for :func:`frame_quads`.

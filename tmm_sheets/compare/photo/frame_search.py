@@ -177,7 +177,7 @@ def _best(grey: Any, ink: Any, block: ProfileLines) -> FoundFrame | None:
     best: FoundFrame | None = None
     for guess in frame_guesses(grey, ink):
         before, best = best, _better(best, ink, guess, block, level)
-        if best is not None and best is not before and not best.mirrored and (inner := _inwards(best, ink, level)) is not None:
+        if best is not None and best is not before and not best.mirrored and (inner := _frame_inside_edge(best, ink, level)) is not None:
             best = _better(best, ink, inner, block, level)
         if best is not None and best.score > SURE:
             break
@@ -261,7 +261,7 @@ def _share_of_best_shift(dark: Any) -> Any:
     )
 
 
-def _inwards(found: FoundFrame, ink: Any, level: float) -> FrameGuess | None:
+def _frame_inside_edge(found: FoundFrame, ink: Any, level: float) -> FrameGuess | None:
     """Where the frame is if sides found are the edge of the paper, or run over to it: then a line runs all along inside them."""
     m = initial_map(found.corners, found.sides, ink.shape)
     t = np.linspace(0.03, 0.97, STATIONS)
@@ -333,7 +333,7 @@ def fit_frame(grey: Grey, m: Map) -> FrameFit:
         When more than one side has no line.
     """
     for width in (2.5, 1.5, WIDE):
-        seen, profile, o = _seek(grey, m, width, 3)
+        seen, profile, o = _frame_points(grey, m, width, 3)
         m, scatter = fit_map(m, seen)
         use = seen.weight > 0
         smear = _smear(profile[use], _offsets(width), o[use])
@@ -350,11 +350,11 @@ def frame_about(grey: Grey, m: Map, width: float) -> FrameFit:
     CannotBuild
         When more than two sides have no line.
     """
-    seen, _, o = _seek(grey, m, width)
+    seen, _, o = _frame_points(grey, m, width)
     use = seen.weight > 0
     scatter = max(1.4826 * float(np.median(np.abs(o[use] - np.median(o[use])))), 0.03)
     # As far to both sides as in any fit: nearer by, a blurred line has no bare paper beside it and looks sharper than it is.
-    wide, profile, o = _seek(grey, m, WIDE)
+    wide, profile, o = _frame_points(grey, m, WIDE)
     use = wide.weight > 0
     return FrameFit(m, seen, scatter, _smear(profile[use], _offsets(WIDE), o[use]))
 
@@ -367,7 +367,7 @@ def sides_near(grey: Grey, m: Map, width: float) -> Seen:
     CannotBuild
         When more than two sides have no line.
     """
-    return _seek(grey, m, width)[0]
+    return _frame_points(grey, m, width)[0]
 
 
 def _offsets(width: float, more: int = 0) -> Floats:
@@ -375,7 +375,7 @@ def _offsets(width: float, more: int = 0) -> Floats:
     return np.arange(-steps, steps + 1) / 10
 
 
-def _seek(grey: Grey, m: Map, width: float, least: int = 2) -> tuple[Seen, Floats, Floats]:
+def _frame_points(grey: Grey, m: Map, width: float, least: int = 2) -> tuple[Seen, Floats, Floats]:
     """Points of the frame near where a map has it, the profiles across it, and how far off it was seen, mm.
 
     At least so many sides must have a line: three where nothing but they is to tell the map.

@@ -484,12 +484,12 @@ def attempt(found: Rectified, known: Sequence[Element]) -> bytes:
 def refusal(grey: Any, found: Rectified, known: Sequence[Element], path: Path, n: int) -> CannotBuild:
     """What is to be said of a picture on which sheet ``n`` could not be laid so that its lines may be judged."""
     said = tell("{file}: sheet {n} could not be laid over the picture, so nothing was judged: {why}")
-    reasons, hints = zip(*_reasons(grey, found), strict=True)
+    reasons, hints = zip(*_doubts_about_picture(grey, found), strict=True)
     files = {f"compare_sheet_{n}_attempt.png": attempt(found, known)}
     return CannotBuild(said.format(file=path, n=n, why="; ".join(reasons)), "; ".join(dict.fromkeys(hints)), files=files)
 
 
-def _reasons(grey: Any, found: Rectified) -> Iterator[tuple[str, str]]:
+def _doubts_about_picture(grey: Any, found: Rectified) -> Iterator[tuple[str, str]]:
     """What is wrong, and what to do about it."""
     check, bent = found.check, _bent(found)
     for k, share in enumerate(check.sides):

@@ -245,7 +245,7 @@ def _similarity(t: InkTrace, tolerance: float) -> Remark:
         if e.kind in ("circle", "arc"):
             said.append(of_radius(t.growth, e.radius))
         elif e.kind == "curve":
-            said.append(_grown(t.growth, half))
+            said.append(_curve_excess(t.growth, half))
     if abs(t.shift) > 0.5 * tolerance:
         said.append(shifted(t.shift))
     if e.kind != "circle" and abs(t.turn) * half > 0.5 * tolerance:
@@ -253,6 +253,6 @@ def _similarity(t: InkTrace, tolerance: float) -> Remark:
     return joined(said) or codes.OFF_BY(by=Number(f"{t.deviation:.1f}"))
 
 
-def _grown(by: float, half: float) -> Remark:
+def _curve_excess(by: float, half: float) -> Remark:
     """An excess of a curve that reaches ``half`` mm to each side, mm."""
     return codes.GROWN[1 if by > 0 else -1](by=millimetres(by), size=Number(f"{half:.0f}"))

@@ -157,7 +157,7 @@ def _end(way: _Way, across: Any, hidden: Any, crowded: Any, level: float) -> flo
         weak = own[extent[1] + 2 : int((t < 0).sum())]
         paler = pale[rest].sum() >= max(PALER / END_STEP, MOST * (~hidden[rest]).sum())
         faded = way.element.style in LOOSE_STYLES and crowded[rest].sum() > 0.5 * len(crowded[rest]) > 0
-        lifted = _lifted(dark[rest], DRAWN_TO if way.element.role == "construction" else RESTS)
+        lifted = _pencil_was_lifted(dark[rest], DRAWN_TO if way.element.role == "construction" else RESTS)
         return float("nan") if (len(weak) and weak.mean() > 0.3) or faded or paler or lifted else most - shown
     beyond = least - shown
     seen = own[(t > pen + BLUR) & (t <= least)]
@@ -166,7 +166,7 @@ def _end(way: _Way, across: Any, hidden: Any, crowded: Any, level: float) -> flo
     return float("nan") if most - min(least, 0.0) > VAGUE else 0.0
 
 
-def _lifted(rest: Any, least: float) -> bool:
+def _pencil_was_lifted(rest: Any, least: float) -> bool:
     """Whether between where a line stops and its proper end there is one gap, as by a lifted pencil, and then ink all the way.
 
     There must be at ``least`` so many mm of that.
@@ -373,19 +373,19 @@ def resolve_overlaps(found: Sequence[InkTrace], ink: Any, owners: Owners, words:
             groups.append([t])
         else:
             home.append(t)
-    return {t.element.number for g in groups for t in _others(g)}
+    return {t.element.number for g in groups for t in _less_likely(g)}
 
 
-def _others(some: Sequence[InkTrace]) -> list[InkTrace]:
+def _less_likely(some: Sequence[InkTrace]) -> list[InkTrace]:
     """Those of several lines found by one stroke that are less likely it than others of them."""
     ends = np.array([np.abs([by for by in t.ends if np.isfinite(by)]).max(initial=0.0) for t in some])
-    stays = np.array([_stays(t) for t in some])
+    stays = np.array([_nearer_end_error(t) for t in some])
     likely = ends <= ends.min() + ENDS
     likely &= stays <= min(stays[likely].min() + STAYS, ASTRAY)
     return [t for t, may in zip(some, likely, strict=True) if not may]
 
 
-def _stays(t: InkTrace) -> float:
+def _nearer_end_error(t: InkTrace) -> float:
     """How far the end of a line that is less off is from its place, mm."""
     assert t.at is not None
     return float(np.abs(t.at[[0, -1]] - t.element.points[[0, -1]]).min())

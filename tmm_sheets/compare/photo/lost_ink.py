@@ -350,12 +350,12 @@ def mask_washed_out(traces: Sequence[InkTrace], uneven: Mask) -> list[InkTrace]:
 
 def _with_ends_shown(t: InkTrace, uneven: Mask) -> InkTrace:
     """A trace; where the light has taken what a line is too short by, its end is unknown."""
-    rests = [k for k, by in enumerate(t.ends) if by < -CUT and at(_rest(t, k), uneven).mean() >= TAKEN]
+    rests = [k for k, by in enumerate(t.ends) if by < -CUT and at(_unseen_places(t, k), uneven).mean() >= TAKEN]
     begin, end = (np.nan if k in rests else by for k, by in enumerate(t.ends))
     return replace(t, ends=(begin, end)) if rests else t
 
 
-def _rest(t: InkTrace, k: int) -> Points:
+def _unseen_places(t: InkTrace, k: int) -> Points:
     """Places of a line that are not seen at its beginning or its end."""
     line, by = sampled(t.element.points if k == 0 else t.element.points[::-1])[0], -t.ends[k]
     return np.asarray(line[: max(round(by / SAMPLED), 1)])
@@ -364,13 +364,13 @@ def _rest(t: InkTrace, k: int) -> Points:
 def taken(before: Sequence[InkTrace], after: Sequence[InkTrace]) -> list[complex]:
     """About where the light took something of the sheet, mm; nothing where it took nothing."""
     places: list[complex] = []
-    for middle in (_where(s, t) for s, t in zip(before, after, strict=True) if s is not t):
+    for middle in (_place_of_loss(s, t) for s, t in zip(before, after, strict=True) if s is not t):
         if all(abs(middle - z) > APART for z in places):
             places.append(middle)
     return places
 
 
-def _where(before: InkTrace, after: InkTrace) -> complex:
+def _place_of_loss(before: InkTrace, after: InkTrace) -> complex:
     """About where the light took something of an element: all of it, or an end."""
     if after.status == "hidden":
         return after.element.middle

@@ -228,12 +228,12 @@ def patches(m: Map, straight: Map, ink: Any, lines: ProfileLines, scale: float, 
     """
     at = straight.to_sheet(m.to_picture(lines.points))
     shrunk = cv2.resize(ink, None, fx=SCALE / scale, fy=SCALE / scale, interpolation=cv2.INTER_AREA)
-    seen = _soft(np.minimum(shrunk, 2 * max(float(np.percentile(shrunk, 90)), 10.0)))
+    seen = _blurred(np.minimum(shrunk, 2 * max(float(np.percentile(shrunk, 90)), 10.0)))
     drawn = np.zeros(shrunk.shape, np.uint8)
     where = np.rint(pixels(at, SCALE).view(np.float64).reshape(-1, 2)).astype(np.int32)
     for one in np.split(where, np.flatnonzero(np.diff(lines.line)) + 1):
         cv2.polylines(drawn, [one], False, 255, 1, cv2.LINE_AA)
-    wanted = _soft(drawn)
+    wanted = _blurred(drawn)
     reach, half = round(REACH * SCALE), round(size / 2 * SCALE)
     seen = cv2.copyMakeBorder(seen, reach, reach, reach, reach, cv2.BORDER_CONSTANT, value=0.0)
     places: list[complex] = []
@@ -254,7 +254,7 @@ def patches(m: Map, straight: Map, ink: Any, lines: ProfileLines, scale: float, 
     return Seen(np.tile(picture, 2), np.tile(p, 2), np.repeat([1 + 0j, 1j], len(p)), np.ones(2 * len(p)))
 
 
-def _soft(picture: Any) -> Any:
+def _blurred(picture: Any) -> Any:
     return cv2.GaussianBlur(picture.astype(np.float32), (0, 0), SOFT * SCALE)
 
 

@@ -65,20 +65,20 @@ def strips(elements: Sequence[Element], ink: Any, owners: Owners, hidden: Mask) 
     # A curve in its place is off here and there rather than too large.
     waiting: list[tuple[Element, Stations]] = []
     for e in elements:
-        waiting.append((e, _shown(stations(e, e.kind in ("circle", "arc")), hidden)))
+        waiting.append((e, _not_hidden(stations(e, e.kind in ("circle", "arc")), hidden)))
         if sum(len(s.points) for _, s in waiting) > AT_ONCE:
-            yield from _across(waiting, ink, owners)
+            yield from _strips_across(waiting, ink, owners)
             waiting = []
-    yield from _across(waiting, ink, owners)
+    yield from _strips_across(waiting, ink, owners)
 
 
-def _shown(s: Stations, hidden: Mask) -> Stations:
+def _not_hidden(s: Stations, hidden: Mask) -> Stations:
     """Those stations that are not hidden, if there are any: what is seen there is the edge of what hides the others."""
     here = ~at(s.points, hidden)
     return s._replace(points=s.points[here], normals=s.normals[here], raw=s.raw[here]) if 0 < here.sum() < len(here) else s
 
 
-def _across(some: Sequence[tuple[Element, Stations]], ink: Any, owners: Owners) -> Iterator[Strip]:
+def _strips_across(some: Sequence[tuple[Element, Stations]], ink: Any, owners: Owners) -> Iterator[Strip]:
     if not some:
         return
     counts = [len(s.points) for _, s in some]

@@ -242,7 +242,7 @@ def over_bulges(
     if not len(places):
         return m, ink, places
     for _ in range(ROUNDS):
-        m = _over(m, lines, places)
+        m = _corrected_map(m, lines, places)
         ink = straighten(m)
         lines = trace_lines(elements, ink, ink_levels(ink)[1], hidden)
         left = local_distortion(lines)
@@ -250,7 +250,7 @@ def over_bulges(
     return m, ink, left
 
 
-def _over(m: Map, lines: Sequence[TracedLine], places: Points) -> Map:
+def _corrected_map(m: Map, lines: Sequence[TracedLine], places: Points) -> Map:
     """The map corrected about bulges at ``places`` by all lines there."""
     shape = (round(FRAME.height / CELL) + 3, round(FRAME.width / CELL) + 3)
     x = FRAME.x0 + (np.arange(shape[1]) - 1) * FRAME.width / (shape[1] - 3)

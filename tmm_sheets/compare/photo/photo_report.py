@@ -345,10 +345,10 @@ def shown(p: FindingCluster) -> tuple[Points, ...]:
     """The lines to be drawn as wrong: where the hand has them, else where they ought to be, of ink in pieces its extent."""
     if not p.findings:
         return (np.append(p.box.corners, p.box.corners[:1]),) if len(p.ink) > 1 else ()
-    return tuple(map(_shown, p.findings))
+    return tuple(map(_place_shown, p.findings))
 
 
-def _shown(f: PhotoFinding) -> Points:
+def _place_shown(f: PhotoFinding) -> Points:
     t = f.trace
     if t.element.kind in ("text", "hatch"):
         corners = t.element.points if t.at is None else t.at

@@ -178,7 +178,7 @@ def _notes(
     """What is worth telling: of each view the file places, of views not found, of lines left out."""
     for view, p in placed.items():
         if view in given:
-            yield _told(view, p, given[view])
+            yield _size_in_words(view, p, given[view])
     absent = ", ".join(f'"{view.name}"' for view, p in placed.items() if p.where is None and view not in given)
     if absent:
         yield tell("not in their places, and left out: {views}; --views can tell where they stand").format(views=absent)
@@ -189,7 +189,7 @@ def _notes(
         yield said.format(n=count)
 
 
-def _told(view: ElementView, placed: _PlacedView, given: StatedViewPlace) -> str:
+def _size_in_words(view: ElementView, placed: _PlacedView, given: StatedViewPlace) -> str:
     """What became of a view the file places: how large it was drawn, against ours or against the scale factor it was given."""
     if placed.where is None:
         said = tell('view "{view}" was not found where --views says: {share} % of its lines are there')

@@ -198,17 +198,17 @@ def noise_level(ink: Any) -> float:
 
 
 def line_level(ink: Any) -> float:
-    """The same for the mean of several places along a line, which shows pale thin lines."""
+    """Darkness from which on the mean of several places along a line counts as ink, which shows pale thin lines."""
     return ink_levels(ink)[1]
 
 
 def ink_levels(ink: Any) -> tuple[float, float]:
     """Both levels: of a single pixel, and of the mean of several places."""
-    middle, noise = _noise(ink)
+    middle, noise = _paper_noise(ink)
     return float(np.clip(middle + 6 * noise, 18.0, 45.0)), float(np.clip(middle + 3.5 * noise, 10.0, 35.0))
 
 
-def _noise(ink: Any) -> tuple[float, float]:
+def _paper_noise(ink: Any) -> tuple[float, float]:
     """Median and standard deviation of bare paper, from differences of neighbouring places, most of which have no ink."""
     # Dithered, since percentiles of whole numbers are coarse. Some 200 000 places are enough.
     rng = np.random.default_rng(1)

@@ -126,13 +126,13 @@ def _spots(e: Element, rods: tuple[Points, Points], taken: Any, ink: Any, words:
         area, middle = int(mine.sum()), np.rint(pixels(np.array(z)) - complex(here[1].start, here[0].start))
         round_ = max(w, h) <= min(ROUND * min(w, h), (2 * e.radius + WIDER) * SCALE) and area > FULL * w * h
         if (round_ and SIZES[0] * size < area < largest * size and max(LEAST, e.radius + ASIDE) < abs(z - e.centre) < FARTHEST_OFF
-                and int(ink[here][mine].max()) > least and _alone(seen, spot, area)
-                and (e.radius >= SMALL or clear[int(middle.imag), int(middle.real)] or _aside(z, rods, ink))):  # fmt: skip
+                and int(ink[here][mine].max()) > least and _stands_alone(seen, spot, area)
+                and (e.radius >= SMALL or clear[int(middle.imag), int(middle.real)] or _is_beside_line(z, rods, ink))):  # fmt: skip
             out.append(z)
     return np.array(out, complex)
 
 
-def _aside(z: complex, rods: tuple[Points, Points], ink: Any) -> bool:
+def _is_beside_line(z: complex, rods: tuple[Points, Points], ink: Any) -> bool:
     """Whether a spot is no end of a line drawn over: ink is paler on all its sides, and no line that went on would reach it."""
     around = sample(ink, pixels(z + RAYS))
     begins, ends = rods
@@ -142,7 +142,7 @@ def _aside(z: complex, rods: tuple[Points, Points], ink: Any) -> bool:
     return bool((around.min(0) < FALLS * around[:2].max()).all() and not drawn_over.any())
 
 
-def _alone(seen: Any, spot: Region, area: int) -> bool:
+def _stands_alone(seen: Any, spot: Region, area: int) -> bool:
     """Whether there is no other ink about a spot: a letter has more strokes than one."""
     by = round(ABOUT_INK * SCALE)
     rows, columns = (slice(max(side.start - by, 0), side.stop + by) for side in spot.here)
@@ -154,7 +154,7 @@ def _seen_in_place(e: Element, lines: Any, ink: Any, words: Any) -> float:
     grid = np.arange(-REACH, REACH + 0.5 / SCALE, 1 / SCALE)
     places = e.centre + grid - 1j * grid[:, None]
     p = pixels(places)
-    drawn, y, seen = _soft(sample(lines, p)), sample(ink, p).astype(np.float64), sample(words, p) == 0
+    drawn, y, seen = _blurred(sample(lines, p)), sample(ink, p).astype(np.float64), sample(words, p) == 0
     plain = np.stack((drawn[seen], np.ones(seen.sum())), -1)
     line = sample(lines, p) > 127
     if e.radius < SMALL and line[np.abs(places - e.centre) <= e.radius].mean() > COVERED:
@@ -162,14 +162,14 @@ def _seen_in_place(e: Element, lines: Any, ink: Any, words: Any) -> float:
     fit, best = np.linalg.pinv(plain), 0.0 if e.radius >= SMALL else nan
     for by in (grid + 1j * grid[:, None])[np.hypot(grid, grid[:, None]) <= ASIDE]:
         disc = 255.0 * (np.abs(places - e.centre - by) <= e.radius)
-        dot = _soft(np.where(line, 0.0, disc))[seen]
+        dot = _blurred(np.where(line, 0.0, disc))[seen]
         rest = dot - plain @ (fit @ dot)
-        if rest @ rest > TELLS * float((_soft(disc) ** 2).sum()):
+        if rest @ rest > TELLS * float((_blurred(disc) ** 2).sum()):
             best = float(np.fmax(best, rest @ y[seen] / (rest @ rest)))
     return best
 
 
-def _soft(picture: Any) -> Floats:
+def _blurred(picture: Any) -> Floats:
     return np.asarray(cv2.GaussianBlur(picture.astype(np.float32) / np.float32(255), (0, 0), BLUR * SCALE), np.float64)
 
 

@@ -121,7 +121,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
     lines = {t.element.number: t for t in (*found, *ended)}
     headed = with_heads(list(lines.values()), ink, owners, words, hidden)
-    out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
+    out = {t.element.number: t for t in headed} | _traces_of_small(small, found, ink, pale) | out_of_sight
     unseen = [t for t in out.values() if t.status in ("absent lettering", "part of lettering")
               or (t.status == "lettering" and t.covered < GAPPY)]  # fmt: skip
     out |= {t.element.number: t for t in small_marks.with_places(unseen, found, small, ink, covers, level)}
@@ -208,7 +208,7 @@ def doubted(
     """The traces; those of lines paler than others of their kind, with gaps, or not seen where they are ``alone``, are looked for
     elsewhere once more.
     """
-    usual = _usual(found)
+    usual = _usual_darkness(found)
     out = []
     for t in found:
         dark = usual.get(line_type(t.element.style).width, 0.0)
@@ -227,7 +227,7 @@ def doubted(
     return out
 
 
-def _usual(found: Sequence[InkTrace]) -> dict[float, float]:
+def _usual_darkness(found: Sequence[InkTrace]) -> dict[float, float]:
     """How dark lines of each width usually are; those of one style may nearly all lie under others."""
     widths: dict[float, list[float]] = {}
     for t in found:
@@ -242,7 +242,7 @@ def _beside_strokes(found: Sequence[InkTrace], small: Sequence[Element], ink: An
     words = _places_of_lettering(small, ink)
     lines = painted(np.zeros_like(ink), seen_at(found), 0)
     taken = painted(words.copy(), [*((e, e.points) for e in small), *seen_at(found)], ABOUT_INK)
-    usual = _usual(found)
+    usual = _usual_darkness(found)
     moved: dict[int, InkTrace] = {}
     for t in found:
         if t.element.kind == "line" and (t.status in ("shared", "dense") or t.parts):
@@ -261,7 +261,7 @@ def _beside_strokes(found: Sequence[InkTrace], small: Sequence[Element], ink: An
 def _dots(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, words: Any, hidden: Mask) -> list[InkTrace]:
     """Traces of the dots that stand beside their places."""
     dots = [e for e in small if e.kind == "circle" and e.fills]
-    usual = _usual(found)
+    usual = _usual_darkness(found)
     if not dots or not usual:
         return []
     others = [(e, e.points) for e in small if e not in dots]
@@ -269,11 +269,11 @@ def _dots(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, words: 
     lines, taken = (painted(np.zeros_like(ink), others, about) for about in (0, ABOUT_INK))
     painted(taken, [(e, e.points) for e in dots], ABOUT_INK / 2)  # paint widens lines, and grows what is filled to all sides
     straight = [t for t in found if t.element.kind == "line"]
-    rods, astray = [t.element.points for t in straight], [t.element.points for t in straight if _astray(t)]
+    rods, astray = [t.element.points for t in straight], [t.element.points for t in straight if _is_displaced(t)]
     return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()), astray)
 
 
-def _astray(t: InkTrace) -> bool:
+def _is_displaced(t: InkTrace) -> bool:
     """Whether a line is not in its place."""
     return t.status in ("missing", "covered", "beside") or (t.status == "measured" and t.deviation > ELSEWHERE)
 
@@ -287,7 +287,7 @@ def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
     return out
 
 
-def _presence(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, level: float) -> dict[int, InkTrace]:
+def _traces_of_small(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, level: float) -> dict[int, InkTrace]:
     """Traces by number of what is not measured: whether there is any ink in the place of lettering; the rest is not looked at.
 
     Each run of letters, a letter or its index, is looked for by itself. The ink of lines that run through its place does not

@@ -29,7 +29,7 @@ CHECKED = 24
 Complex = npt.NDArray[np.complex128]
 
 
-def _away(points: Any, goals: list[Any]) -> float:
+def _largest_distance(points: Any, goals: list[Any]) -> float:
     """Largest distance of points from their true places."""
     with mp.workdps(DIGITS):
         return max(float(abs(p - goal)) for p, goal in zip(np.asarray(points).tolist(), goals, strict=True))
@@ -152,7 +152,7 @@ def _cams(bench: Bench) -> None:
     def at_points(n: int, found: Any) -> float:
         with mp.workdps(DIGITS):
             k, goals = some(n, 0.0)
-            return _away(found[k], goals) * 1e3
+            return _largest_distance(found[k], goals) * 1e3
 
     def between(n: int, found: Any) -> float:
         with mp.workdps(DIGITS):
@@ -182,7 +182,7 @@ def _involute_at(wheel: GearWheel, share: Any) -> Any:
     return r / r_pole * mp.expj(turned - turned_pole)
 
 
-def _seen(pair: GearPair, wheel: GearWheel, points: Any) -> Complex:
+def _in_tooth_frame(pair: GearPair, wheel: GearWheel, points: Any) -> Complex:
     """Constructed points in the same frame, mirrored where the involute winds the other way."""
     centre, pole = (complex(pair.engagement[name].value) for name in (f"O{wheel.number}", "Pw"))
     z = (np.asarray(points) - centre) / (pole - centre)
@@ -196,7 +196,7 @@ def _involutes(bench: Bench) -> None:
 
     def unrolled(parts: int) -> Complex:
         plan = involute_plan(wheel, pair.engagement, parts)
-        return _seen(pair, wheel, [plan[f"E{k}"].value for k in divisions(wheel, parts)])
+        return _in_tooth_frame(pair, wheel, [plan[f"E{k}"].value for k in divisions(wheel, parts)])
 
     def stepped(parts: int) -> Complex:
         """With arcs of the base circle stepped off with dividers, that is, as chords, one for each division."""
@@ -208,7 +208,7 @@ def _involutes(bench: Bench) -> None:
 
     def off(parts: int, found: Complex) -> float:
         with mp.workdps(DIGITS):
-            return _away(found, [_involute_at(wheel, mp.mpf(k) / parts) for k in range(len(found))]) * scale
+            return _largest_distance(found, [_involute_at(wheel, mp.mpf(k) / parts) for k in range(len(found))]) * scale
 
     def between(parts: int, found: Complex) -> float:
         with mp.workdps(DIGITS):
@@ -263,7 +263,7 @@ def _racks(bench: Bench) -> None:
 
     def off(n: int, found: Complex) -> float:
         with mp.workdps(DIGITS):
-            return _away(found, [_flank_at(abs(mp.mpc(p))) for p in found.tolist()]) * 1e3
+            return _largest_distance(found, [_flank_at(abs(mp.mpc(p))) for p in found.tolist()]) * 1e3
 
     bench.rows(("rack generation", "points of contact (mm)", "rack positions"), counts, 60, touched, off)
     bench.rows(("rack generation", "positions cut out (shapely, mm)", "rack positions"), counts, 60, _cut_by_rack,

@@ -55,11 +55,11 @@ def state(m: Mechanism, phi: Any) -> TrueState:
     c = m.crank
     s.links[c.link] = mp.expj(phi)
     s.points[c.pin] = s.points[c.pivot] + c.length * s.links[c.link]
-    _further(m, s, c.link)
+    _add_link_points(m, s, c.link)
     for g in m.groups:
         _place(m, s, g)
         for link in g.links:
-            _further(m, s, link)
+            _add_link_points(m, s, link)
     return s
 
 
@@ -71,7 +71,7 @@ def _base(m: Mechanism, s: TrueState, link: str, start: str, towards: str) -> An
     return _unit(s.points[towards] - s.points[start])
 
 
-def _further(m: Mechanism, s: TrueState, link: str) -> None:
+def _add_link_points(m: Mechanism, s: TrueState, link: str) -> None:
     for p in m.points:
         if p.link == link:
             s.points[p.name] = s.points[p.start] + p.distance * _base(m, s, link, p.start, p.towards) * mp.expj(p.angle)

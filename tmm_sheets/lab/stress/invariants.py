@@ -70,7 +70,7 @@ class State:
         """Whatever makes values of the steps of plans before they are read: nothing, each step makes its own."""
 
     def others(self, phi: Any) -> State:
-        """The same mechanism at other crank angles, in the same way."""
+        """The state of the mechanism at other crank angles, evaluated in this way."""
         return type(self)(self.m, phi, self.gravity)
 
     # Nobody asks for accelerations where only positions and velocities are differentiated.
@@ -149,7 +149,7 @@ class State:
 
 
 class OneFunction(State):
-    """The same by one function for each plan instead of its steps, see :mod:`~tmm_sheets.construction.function`."""
+    """A state evaluated by one function for each plan instead of step by step, see :mod:`~tmm_sheets.construction.function`."""
 
     def evaluate(self, *plans: Plan) -> None:
         """Values of all steps at once."""

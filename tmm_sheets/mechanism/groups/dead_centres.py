@@ -72,7 +72,7 @@ def gap_of_arcs(span: Span, plus: float, minus: float = 0.0) -> Cosine:
         apart = square.sqrt()
         if minus:
             length = alike(abs(length), l1 + apart if minus > 0 else abs(l1 - apart),
-                           l1 + apart + abs(Decimal(plus)) + abs(Decimal(minus)) + _far(span[2]) + _far(span[3]))
+                           l1 + apart + abs(Decimal(plus)) + abs(Decimal(minus)) + _manhattan(span[2]) + _manhattan(span[3]))
         return Cosine(-square - l1 * l1 + length * length, 2 * l1 * apart, angle_of(x, y) - ahead)
 
 
@@ -81,7 +81,7 @@ def alike(length: Decimal, other: Decimal, size: Decimal) -> Decimal:
     return other if abs(length - other) <= MEANT * size else length
 
 
-def _far(point: complex) -> Decimal:
+def _manhattan(point: complex) -> Decimal:
     return abs(Decimal(point.real)) + abs(Decimal(point.imag))
 
 
@@ -91,7 +91,7 @@ def gaps_of_line(l1: float, ahead: float, length: float, pivot: complex, through
     with localcontext(prec=DIGITS):
         radius, rod = Decimal(l1), Decimal(length)
         e0, start = height(pivot, through, guide)[0], direction(guide)[0] - direction(ahead)[0]
-        size = radius + rod + abs(e0) + _far(pivot)
+        size = radius + rod + abs(e0) + _manhattan(pivot)
         below, above = (alike(rod + sign * e0, radius, size) for sign in (1, -1))
         return Gaps(Cosine(below, radius, start + PI / 2), Cosine(above, radius, start - PI / 2))
 
@@ -302,7 +302,7 @@ def _of_arcs(phi: Reals, branch: Reals, l1: float, ahead: float, pivot: complex,
 @primitive("branch of arc and line", "real")
 def branch_of_line(phi: Reals, l1: float, ahead: float, length: float, pivot: complex, through: complex, guide: float, side: Signs,
                    at: float, cut: float, sense: float, follow: float) -> Any:
-    """The same as of two arcs, for a rod on a guide."""
+    """The branch of a rod on a guide, as :func:`branch_of_arcs` has that of two arcs."""
     return gaps_of_line(l1, ahead, length, pivot, through, guide).branch(phi, side, at, cut, sense, bool(follow))
 
 

@@ -169,7 +169,7 @@ def locus_sine(k: Any, u: Directions, *legs: Any) -> Reals:
     """Sine of the angle at which the locus of the third corner crosses the circle or the guide of its leg."""
     k, u = solved(k, u, legs)
     _, normals, _ = conditions(k, u, legs)
-    ahead, turned = _freely(k, u, legs, 1.0, legs[14])
+    ahead, turned = _free_step(k, u, legs, 1.0, legs[14])
     along = ahead - k + legs[14] * u * np.angle(turned / u) * 1j
     return (np.conj(normals[2]) * along).real / np.abs(along)
 
@@ -180,7 +180,7 @@ def _moved(k: Any, u: Any, amount: Any, legs: Legs) -> tuple[Any, Any]:
     corner = many[14]
     with np.errstate(all="ignore"):
         for _ in range(MOVES):
-            k, u = _freely(k, u, many, amount / MOVES, corner)
+            k, u = _free_step(k, u, many, amount / MOVES, corner)
             for _ in range(3):
                 k, u = _back(k, u, many)
     return k, u
@@ -189,7 +189,7 @@ def _moved(k: Any, u: Any, amount: Any, legs: Legs) -> tuple[Any, Any]:
 MOVES = 6
 
 
-def _freely(k: Any, u: Any, legs: Legs, way: Any, corner: Any) -> tuple[Any, Any]:
+def _free_step(k: Any, u: Any, legs: Legs, way: Any, corner: Any) -> tuple[Any, Any]:
     """A step along the freedom that two legs leave: across both their conditions."""
     _, normals, points = conditions(k, u, legs)
     x, y, m = normals.real, normals.imag, moments(k, normals, points)

@@ -135,7 +135,7 @@ def _moving(leg: Leg, triangle: str) -> str:
     return leg.corner if leg.slot is None else on_link(leg.outer, triangle)
 
 
-def _of(g: StructuralGroup) -> TriadGroup:
+def _as_triad(g: StructuralGroup) -> TriadGroup:
     assert isinstance(g, TriadGroup)
     return g
 
@@ -147,11 +147,11 @@ class TriadKind(GroupKind):
     grade, order = 3, 3
 
     def legs(self, g: StructuralGroup) -> tuple[Leg, ...]:
-        return _of(g).legs
+        return _as_triad(g).legs
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         found = []
-        for leg in _of(g).legs:
+        for leg in _as_triad(g).legs:
             if leg.guide:
                 found.append(sliding(leg.corner + "′", m.guides[leg.guide].link, leg.link))
             else:
@@ -161,10 +161,10 @@ class TriadKind(GroupKind):
         return found
 
     def carried(self, g: StructuralGroup) -> dict[str, str]:
-        return {leg.corner: g.links[0] for leg in _of(g).legs}
+        return {leg.corner: g.links[0] for leg in _as_triad(g).legs}
 
     def guided(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:
-        return tuple((leg.corner, leg.guide) for leg in _of(g).legs if leg.guide)
+        return tuple((leg.corner, leg.guide) for leg in _as_triad(g).legs if leg.guide)
 
     # --- positions ------------------------------------------------------------------------------------------------
 
@@ -176,7 +176,7 @@ class TriadKind(GroupKind):
         CannotBuild
             when no way of assembly is near the direction told, or two of them, or a turn of the crank leads to another one.
         """
-        triad, plan = _of(g), pos.plan
+        triad, plan = _as_triad(g), pos.plan
         a, b, c = triad.legs
         way = pos.course(g)
         _check(triad, way)
@@ -219,7 +219,7 @@ class TriadKind(GroupKind):
 
     def before(self, pos: Positions, g: StructuralGroup) -> tuple[Any, ...]:
         """What holds the triangle, in numbers, on a plan that ends before the group."""
-        return tuple(value_of(x) for x in self._held(pos, _of(g)))
+        return tuple(value_of(x) for x in self._held(pos, _as_triad(g)))
 
     @staticmethod
     def _false_positions(pos: Positions, g: TriadGroup, near: tuple[Step, Step], held: tuple[Any, ...]) -> None:
@@ -310,7 +310,7 @@ class TriadKind(GroupKind):
 
     def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:
         """Kind 6: tangential parts from moments of each leg, a normal one from those of the group about the special point."""
-        pos, m, triad, tri = forces.positions, forces.positions.mechanism, _of(g), g.links[0]
+        pos, m, triad, tri = forces.positions, forces.positions.mechanism, _as_triad(g), g.links[0]
         s = pos.special[special_name(tri)]
         (a, b), c = s.pair, s.third
         ends: dict[Leg, Held] = {}
@@ -359,7 +359,7 @@ class TriadKind(GroupKind):
     # --- limits -------------------------------------------------------------------------------------------------------
 
     def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
-        triad = _of(g)
+        triad = _as_triad(g)
         leg = triad.legs[2]
 
         def say(lack: float) -> str:
@@ -390,7 +390,7 @@ class TriadKind(GroupKind):
         return found
 
     def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
-        triad = _of(g)
+        triad = _as_triad(g)
         held = tuple(value_of(x) for x in self._held(pos, triad))
         k, u = pos.points[triad.legs[0].corner].value, pos.directions[g.links[0]].value
         _, normals, points = three_legs.conditions(k, u, held)
@@ -401,7 +401,7 @@ class TriadKind(GroupKind):
     # --- looks --------------------------------------------------------------------------------------------------------
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
-        triad = _of(g)
+        triad = _as_triad(g)
         arms = tuple((leg.corner, leg.outer) for leg in triad.legs if leg.slot is not None)
         found = [Outline(g.links[0], tuple(leg.corner for leg in triad.legs), arms=arms)]
         for leg in triad.legs:
@@ -415,17 +415,17 @@ class TriadKind(GroupKind):
         return special_name(g.links[0])
 
     def sliders(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:
-        return tuple((leg.link, leg.guide) for leg in _of(g).legs if leg.guide)
+        return tuple((leg.link, leg.guide) for leg in _as_triad(g).legs if leg.guide)
 
 
     def told(self, g: StructuralGroup) -> str:
-        return "–".join(tr(FORMS[leg.form]) for leg in _of(g).legs)
+        return "–".join(tr(FORMS[leg.form]) for leg in _as_triad(g).legs)
 
     def joints(self, g: StructuralGroup) -> tuple[str, ...]:
-        return (*(leg.corner for leg in _of(g).legs), *g.outer)
+        return (*(leg.corner for leg in _as_triad(g).legs), *g.outer)
 
     def block(self, g: StructuralGroup, link: str) -> str:
-        return next(leg.at for leg in _of(g).legs if leg.link == link)
+        return next(leg.at for leg in _as_triad(g).legs if leg.link == link)
 
 
 def sign(n: int) -> str:
@@ -451,7 +451,7 @@ ALIKE = np.radians(0.01)
 """Within it two ways of assembly cannot be told apart by the direction."""
 
 
-def _ways(g: TriadGroup, way: Course) -> dict[str, Any]:
+def _assemblies_in_words(g: TriadGroup, way: Course) -> dict[str, Any]:
     """Ways of assembly for a message."""
     return {"group": "-".join(g.links), "side": g.legs[0].corner + g.legs[1].corner, "angle": np.degrees(g.when),
             "told": np.degrees(g.near), "ways": in_a_row(of_reader(f"{np.degrees(np.angle(u)) % 360:.1f}") for _, u in way.found)}
@@ -469,15 +469,15 @@ def _check(g: TriadGroup, way: Course) -> None:
         return  # the limits tell by how much
     if abs(np.angle(way.found[way.taken][1] * np.exp(-1j * g.near))) > SURELY:
         message = tell("group {group}: no way of assembly at crank angle {angle:g} deg has {side} near {told:g} deg")
-        raise CannotBuild(message.format(**_ways(g, way)), tell("take one of {ways} deg").format(**_ways(g, way)))
+        raise CannotBuild(message.format(**_assemblies_in_words(g, way)), tell("take one of {ways} deg").format(**_assemblies_in_words(g, way)))
     others = [abs(np.angle(u / way.found[way.taken][1])) for n, (_, u) in enumerate(way.found) if n != way.taken]
     if min(others, default=np.pi) < ALIKE:
         message = tell("group {group}: two ways of assembly have {side} in the same direction at crank angle {angle:g} deg")
-        raise CannotBuild(message.format(**_ways(g, way)), tell("tell the direction at another crank angle, with at = \"30 deg\""))
+        raise CannotBuild(message.format(**_assemblies_in_words(g, way)), tell("tell the direction at another crank angle, with at = \"30 deg\""))
     if not way.back:
         message = tell("group {group}: after a turn of the crank it stands in another way of assembly")
         hint = tell("make the crank shorter; ways of assembly at crank angle {angle:g} deg have {side} at {ways} deg")
-        raise CannotBuild(message.format(**_ways(g, way)), hint.format(**_ways(g, way)))
+        raise CannotBuild(message.format(**_assemblies_in_words(g, way)), hint.format(**_assemblies_in_words(g, way)))
 
 
 def _hint(g: TriadGroup, pos: Positions) -> str:
@@ -486,7 +486,7 @@ def _hint(g: TriadGroup, pos: Positions) -> str:
         return tell("no way of assembly at crank angle {angle:g} deg: lengthen a leg or bring the pivots nearer").format(
             angle=np.degrees(g.when))
     return tell("make the crank shorter, or the legs longer; ways of assembly at crank angle {angle:g} deg have {side} at "
-                "{ways} deg").format(**_ways(g, way))
+                "{ways} deg").format(**_assemblies_in_words(g, way))
 
 
 TRIAD = TriadKind()

@@ -373,7 +373,7 @@ class Phase(Motion):
 
     @property
     def index(self) -> str:
-        """The same as it is written on paper."""
+        """Index of the symbol as it is written on paper."""
         return self.letters.removeprefix("φ_")
 
     @property

@@ -130,12 +130,12 @@ def motion_scales(law: PositionFunction, width: float, height: float, equal: boo
     spans = extents(law)
     place = _Place(law, spans, width, height)
     finest = handy(degrees(law.fall.end) / (width - (BESIDE if has_circle(law) else BARE) - POLE))
-    across = [radians(degree) for degree in _coarser(finest)]
+    across = [radians(degree) for degree in _coarser_scales(finest)]
     if equal:
-        found, highs = place.best(across, *[_coarser(sum(spans) / height)] * 3, one=True)
+        found, highs = place.best(across, *[_coarser_scales(sum(spans) / height)] * 3, one=True)
         if sum(highs) >= FILLED * height and highs[2] >= CURVE:
             return found
-    return place.best(across, *(_coarser(span / ((1.0 - LEFT) * height)) for span in spans))[0]
+    return place.best(across, *(_coarser_scales(span / ((1.0 - LEFT) * height)) for span in spans))[0]
 
 
 def extents(law: PositionFunction) -> list[float]:
@@ -191,7 +191,7 @@ def has_circle(law: PositionFunction) -> bool:
     return any(p.law.division is not None for p in (law.rise, law.fall))
 
 
-def _coarser(least: float) -> list[float]:
+def _coarser_scales(least: float) -> list[float]:
     """The smallest handy scale factors that are not less than ``least``, up to about five times as large."""
     series = [handy(least)]
     while len(series) < 7:

@@ -42,12 +42,12 @@ Centre = Literal["vertex", "least"]
 # --- arithmetic of the cones ---------------------------------------------------------------------------------------------
 
 
-def _up(psi: Any, turn: Any) -> Directions:
+def _rise_direction(psi: Any, turn: Any) -> Directions:
     """Direction of the velocity of B of a rocker in the rise; it lies horizontal at ``psi`` 0."""
     return 1j * np.exp(1j * turn * psi)
 
 
-def _swung(pivot: Points, psi: Any, turn: Any) -> Points:
+def _rocker_end(pivot: Points, psi: Any, turn: Any) -> Points:
     """Position of B of a rocker, m."""
     return pivot * (1 - np.exp(1j * turn * psi))
 
@@ -115,11 +115,11 @@ class Cones:
     def ups(self, p: Phase, x: Reals) -> Directions:
         """Direction of the velocity of B in the rise, at shares ``x`` of a phase."""
         s = np.asarray(p.s(x))
-        return _up(s, self.turn) if self.pivot is not None else 1j * np.ones(s.shape)
+        return _rise_direction(s, self.turn) if self.pivot is not None else 1j * np.ones(s.shape)
 
     def starts(self, p: Phase, x: Reals) -> Points:
         """Positions of B, m."""
-        return 1j * np.asarray(p.s(x)) if self.pivot is None else _swung(self.pivot, np.asarray(p.s(x)), self.turn)
+        return 1j * np.asarray(p.s(x)) if self.pivot is None else _rocker_end(self.pivot, np.asarray(p.s(x)), self.turn)
 
     def tips(self, p: Phase, x: Reals) -> Points:
         """Tips D of the cones, m."""
@@ -244,7 +244,7 @@ def _lower(p: Any, q: Any) -> Points:
 CURVE = Rule("curve of the analogues", lambda s, ds, right: right * ds + 1j * s, ("ordinate", "ordinate", "number"), "point",
              marked("Join the points with the ordinates S and the abscissae S' by the smooth curve {name}."), source=SOURCE)
 ROCKER_CURVE = Rule("curve of the analogues of a rocker", lambda psi, dpsi, pivot, turn, right, arm: _tip(
-    _swung(pivot, psi, turn), _up(psi, turn), right, arm, dpsi), ("inclination", "number", "point", "number", "number", "length"),
+    _rocker_end(pivot, psi, turn), _rise_direction(psi, turn), right, arm, dpsi), ("inclination", "number", "point", "number", "number", "length"),
     "point",
     marked("Join the ends of the segments AB·ψ' laid off on the lines of the rocker by the smooth curve {name}."), source=SOURCE)
 TOUCH = Rule("tangent under an angle", lambda s, ds, right: right * ds + 1j * s, ("ordinate", "ordinate", "number"), "point",
@@ -256,7 +256,7 @@ INCLINED = Rule("direction under the permitted angle", lambda alpha, side: side 
 OUTERMOST = Rule("outermost ray", ROCKER_CURVE.compute, ROCKER_CURVE.takes, "point",
                  marked("The outermost of the rays that bound the zone on this side begins at point {name} of the curve D(ψ)."))
 OUTERMOST_DIRECTION = Rule("direction of the outermost ray",
-                           lambda psi, turn, alpha, side: _ray_direction(_up(psi, turn), alpha, side),
+                           lambda psi, turn, alpha, side: _ray_direction(_rise_direction(psi, turn), alpha, side),
                            ("inclination", "number", "angle", "number"), "direction",
                            marked("Draw the outermost ray {name} at the permitted pressure angle to the velocity of B."))
 TURNED = Rule("turn about the axis of the rocker", lambda a, b, angle, sense: a + (b - a) * np.exp(1j * sense * angle),
@@ -577,7 +577,7 @@ def rocker_zone(law: PositionFunction, arm: float, alpha: float, limit: Limit, r
             (tell("cam.pressure_angle: no axis of the cam keeps the pressure angle of the rocker within {angle:g} deg on the rise")
              if limit == "rise" else
              tell("cam.pressure_angle: no axis of the cam keeps the pressure angle of the rocker within {angle:g} deg on the rise "
-                  "and the fall")).format(angle=degrees(alpha)), _wider(cones))
+                  "and the fall")).format(angle=degrees(alpha)), _hint_of_wider_angle(cones))
     touch = Plan("cam-zone-touch", tr("Points where the outermost rays of the zone begin"), "m")
     z = Zone(plan, {p.name: p for p in (rows, touch, plan)}, exact, cones, plan["B"], plan["D"], (), (), plan["B_0"])
     rays = found[1] if found else ()
@@ -630,7 +630,7 @@ def _outermost(plan: Plan, z: Zone, rays: tuple[Ray, ...], touch: Plan) -> tuple
 
 # --- pressure angle ---------------------------------------------------------------------------------------------------
 
-VELOCITY_OF_B = Rule("direction of the velocity of B", _up, ("inclination", "number"), "direction",
+VELOCITY_OF_B = Rule("direction of the velocity of B", _rise_direction, ("inclination", "number"), "direction",
                      marked("Draw the direction {name} of the velocity of B."))
 PRESSURE = Rule("pressure angle at a place", lambda tip, o, up, right: -right * np.angle((tip - o) / up),
                 ("point", "point", "direction", "number"), "inclination",
@@ -658,7 +658,7 @@ def max_pressure_angles(z: Zone) -> Plan:
     return plan
 
 
-def _wider(cones: Cones) -> str:
+def _hint_of_wider_angle(cones: Cones) -> str:
     """Hint: the least permitted angle, in whole degrees, with which there is a zone."""
     low, high = ceil(degrees(cones.alpha)), 90
     while high - low > 1:

@@ -39,7 +39,7 @@ def lettered(n: int) -> str:
     return text
 
 
-def _fresh(number: str, taken: set[str]) -> str:
+def _shortest_free(number: str, taken: set[str]) -> str:
     """The number with the first letters with which it is not taken; it is from now on."""
     found = next(name for n in count() if (name := number + lettered(n)) not in taken)
     taken.add(found)
@@ -111,9 +111,9 @@ class Intervals:
         last, result, taken = "", [], set(self._numbered.values())
         for k in range(len(self.edges)):
             last = self._numbered.get(k, last)
-            result.append(last if k in self._numbered else _fresh(last, taken))
+            result.append(last if k in self._numbered else _shortest_free(last, taken))
         if result[0] == result[-1]:
-            result[0] = _fresh("0", taken)  # position 12 is the first and the last point of the graph
+            result[0] = _shortest_free("0", taken)  # position 12 is the first and the last point of the graph
         return tuple(result)
 
     @cached_property
@@ -125,7 +125,7 @@ class Intervals:
             first, *others = sorted(range(start, end), key=lambda k: -round(float(widths[k]), 9))
             result[first] = name
             for k in others:
-                result[k] = _fresh(name, taken)
+                result[k] = _shortest_free(name, taken)
         return tuple(result)
 
     @property
@@ -220,7 +220,7 @@ class Diagrams(Intervals, ABC):
         return at.inertia
 
     def inertia(self, phi: Any) -> Floats:
-        """The same at any angles."""
+        """Reduced moment of inertia whose graph is drawn at any angles, rad, kg m2."""
         if phi is self.samples:
             return np.asarray(self.mass(self.at_samples).value)
         return np.asarray(self.reduced.inertia(phi)) - self.left_out

@@ -211,7 +211,7 @@ class Flywheel(Works):
 
     @planned("flywheel-limit", marked("Flywheel as n → ∞"))
     def limit_plan(self, plan: Plan) -> None:
-        """The same for vanishing intervals: ``J_I∞``, ``J_м∞``, and by how much the drawn one is off: ``ΔJ_м``, ``разность`` in %.
+        """The flywheel for vanishing intervals: ``J_I∞``, ``J_м∞``, and by how much the drawn one is off: ``ΔJ_м``, ``разность`` in %.
 
         Of a given flywheel ``δ∞``, and the difference of ``δ``.
         """
@@ -251,7 +251,7 @@ class Flywheel(Works):
 
     @property
     def J_first_converged(self) -> float:
-        """The same for vanishing intervals, kg m2."""
+        """Moment of inertia of what turns with the crank, flywheel included, for vanishing intervals, kg m2."""
         return float((self.first_plan["J_I"] if self.given else self.limit_plan["J_I∞"]).value)
 
     @property
@@ -370,7 +370,7 @@ class Flywheel(Works):
 
     @cached_property
     def position_acceleration(self) -> Plan:
-        """The same at the numbered positions, on their velocity plans."""
+        """Angular acceleration of the crank at the numbered positions, on their velocity plans."""
         return self._acceleration(self.reduced.numbered, self.labels, "", (self.closing,))
 
     def _acceleration(self, at: Reduction, labels: tuple[str, ...], name: str, closing: tuple[Given, ...] = ()) -> Plan:

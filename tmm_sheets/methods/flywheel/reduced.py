@@ -176,7 +176,7 @@ class Reduction:
 
     @cached_property
     def others(self) -> Step:
-        """The same without the crank's: step ``J_II``."""
+        """Reduced moment of inertia without the crank's part: step ``J_II``."""
         if self.crank_alone:
             return self.plan.add("J_II", EVERYWHERE, 0.0, self.over)
         return self.plan.add("J_II", WITHOUT_CRANK, self.inertia, self.reduced.crank)
@@ -324,7 +324,7 @@ class Reduced:
 
     @cached_property
     def crank(self) -> Step:
-        """The same as a step: ``J_кр`` of the plan "crank-inertia"."""
+        """The crank's own part as a step: ``J_кр`` of the plan "crank-inertia"."""
         m, plan = self.mechanism, self.crank_plan
         crank = m.links[m.crank.link]
         if crank.pivot_inertia is not None or not self.moves(crank):

@@ -132,7 +132,7 @@ class Wittenbauer(Flywheel):
         return self.mu("energy"), self.mu("inertia"), added, plan["ω_max"]
 
     def speed_curve(self, phi: Any) -> Floats:
-        """The same at any angles, rad/s."""
+        """Angular velocity of the crank at any angles, rad/s."""
         of = (value_of(a) for a in self._running(self.speed_plan))
         return np.asarray(SPEED.compute(self.energy_curve(phi), self.energy_mass_plan["a"].value,
                                         self.scales.inertia.mm(self.inertia(phi)), *of))
@@ -184,7 +184,7 @@ class Wittenbauer(Flywheel):
 
     @cached_property
     def limit(self) -> ConvergedWheel:
-        """The same for vanishing intervals, with its error."""
+        """The flywheel for vanishing intervals, with its error."""
         r = self.reduced
         return limit(r.moment, r.inertia, self.edges, r.omega1, self.data.delta, whole=self._limit_row,
                      held=float(self.added.value) if self.given else 0.0)
@@ -320,7 +320,7 @@ class Mertsalov(Flywheel):
 
     @planned("crank-speed", marked("Graph of the angular velocity of the input link"), "mm", "labels")
     def speed_plan(self, plan: Plan) -> None:
-        """The same curve read as the angular velocity: ``O`` (its axis), ``y`` (ordinates, mm), ``ω1`` (rad/s) at the positions.
+        """The curve T_I read as the angular velocity: ``O`` (its axis), ``y`` (ordinates, mm), ``ω1`` (rad/s) at the positions.
 
         ``μ_ω`` is its scale factor, ``ω_max`` and ``ω_min`` the angular velocity at the tangents.
         """

@@ -21,7 +21,7 @@ from tmm_sheets.words import marked, tr
 
 
 @primitive("gather ordinates", "real")
-def _gather(*points: Any) -> Any:
+def _imaginary_parts(*points: Any) -> Any:
     return np.array([np.imag(p) for p in points])
 
 
@@ -68,7 +68,7 @@ PLOT = Rule(
     marked("At the abscissa {0} lay off the ordinate {1}: a point of the graph."),
     lambda a, v: (Helper("line", complex(a[0], 0), v),),
 )
-MEASURE = Rule("measure ordinates", _gather, (), "ordinate", marked("Measure the ordinate of the graph of work {name} = {value}."))
+MEASURE = Rule("measure ordinates", _imaginary_parts, (), "ordinate", marked("Measure the ordinate of the graph of work {name} = {value}."))
 ON_LINE = Rule("ordinate of a straight line", lambda x, end: x * np.imag(end) / np.real(end), ("ordinate", "point"), "ordinate",
                marked("At the abscissa {0} measure the ordinate of the line {name} = {value}."))
 SUM = Rule("add ordinates", lambda a, b: a + b, ("ordinate", "ordinate"), "ordinate",
@@ -229,7 +229,7 @@ class Works(Diagrams):
 
     @planned("ordinates@intervals", marked("Ordinates of the moment by intervals"), "mm")
     def intervals_plan(self, plan: Plan) -> None:
-        """The same interval by interval: ``y``, ``+`` (at its beginning), ``−`` (at its end) with its name."""
+        """The graph interval by interval: ``y``, ``+`` (at its beginning), ``−`` (at its end) with its name."""
         slopes, middles = self.slopes_plan, self.middles_plan["y"]
         for k, interval in enumerate(self.intervals):
             left, right = self._drawn_at(plan, k, 1), self._drawn_at(plan, k + 1, -1)
@@ -370,7 +370,7 @@ class Works(Diagrams):
     work = Row("total_plan", "A")
     """Work of that moment from position 0, J: ends of the chords."""
     work_converged = Row("area_plan", "A")
-    """The same work by the area of the graph of the moment, for vanishing intervals, J."""
+    """The work by the area of the graph of the moment, for vanishing intervals, J."""
 
     @property
     def work_error(self) -> float:

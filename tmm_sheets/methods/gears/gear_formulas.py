@@ -303,7 +303,7 @@ def addendum(plan: Plan, i: Any) -> str:
 
 
 def dedendum(plan: Plan, i: Any) -> str:
-    """The same of the mate: so deep, and the clearance more, wheel ``i`` is cut."""
+    """Name of the step with the mate's addendum: so deep, and the clearance more, wheel ``i`` is cut."""
     return addendum(plan, 3 - int(i))
 
 

@@ -149,7 +149,7 @@ class GearPair(PairGeometry):
         return {}
 
     def smooth_involute(self, wheel: GearWheel, points: int = 40, reach: float = 1.0) -> Plan:
-        """The same construction with many divisions, from the base circle to ``reach`` times the tip's tangent: steps ``Ek``."""
+        """The involute with many divisions, from the base circle to ``reach`` times the tip's tangent: steps ``Ek``."""
         key = wheel.number, reach
         if key not in self._smooth:
             numbers = np.sqrt(np.linspace(0, (wheel.t_tip / wheel.t_pole * reach) ** 2, points))
@@ -301,7 +301,7 @@ def record_flank(wheel: GearWheel, side: int, engagement: Plan, tooth: Plan) -> 
 
 
 def record_cut(wheel: GearWheel, side: int, engagement: Plan, tooth: Plan) -> Step:
-    """The same as the rack cuts it, of the tooth about the axis recorded in ``tooth``."""
+    """The flank as the rack cuts it, of the tooth about the axis recorded in ``tooth``."""
     of = wheel.of_pair
     if "flank" in tooth and tooth["flank"].rule is CUT:
         return tooth["flank"]

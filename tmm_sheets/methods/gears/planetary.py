@@ -200,20 +200,20 @@ class _Task:
         ok = z4 >= d.least_teeth if self.given[3] is None else z4 == self.given[3]
         if not self.scheme.single:
             ok &= z2 != z3  # one wheel would do
-        return self._only((z1, z2, z3, z4), ok)
+        return self._filtered((z1, z2, z3, z4), ok)
 
     def candidates(self, largest: int, reach: float) -> list[Ints]:
         """All stages with wheels of at most ``largest`` teeth that meet the conditions and may come within ``reach``."""
         d, s = self.data, self.scheme.signs
         z = self.coaxial(largest)
-        z = self._only(z, neighbours_clear(s, z, d.satellites, d.addendum))
+        z = self._filtered(z, neighbours_clear(s, z, d.satellites, d.addendum))
         wheels = self.wheels()
         if not len(wheels):
             return [v[:0] for v in z]
         total = abs(stage_ratio(inner_ratio(s, z), self.driver)) ** self.stages
-        z = self._only(z, (total * (wheels[-1] / self.pinion) >= self.ratio * (1 - reach))
+        z = self._filtered(z, (total * (wheels[-1] / self.pinion) >= self.ratio * (1 - reach))
                        & (total * (wheels[0] / self.pinion) <= self.ratio * (1 + reach)))
-        z = self._only(z, assembles(s, z, d.satellites))
+        z = self._filtered(z, assembles(s, z, d.satellites))
         return self.free_of_interference(z) if d.strict_internal else z
 
     def free_of_interference(self, z: list[Ints]) -> list[Ints]:
@@ -221,11 +221,11 @@ class _Task:
         for satellite, ring in internal_pairs(self.scheme.signs):
             teeth = range(int(z[satellite].max(initial=0)) + 1)
             least = np.array([least_ring(v, self.data.addendum) or 10**6 for v in teeth])
-            z = self._only(z, z[ring] >= least[z[satellite]])
+            z = self._filtered(z, z[ring] >= least[z[satellite]])
         return z
 
     @staticmethod
-    def _only(z: Sequence[Ints], keep: Any) -> list[Ints]:
+    def _filtered(z: Sequence[Ints], keep: Any) -> list[Ints]:
         return [v[keep] for v in z]
 
     def ranked(self, largest: int, count: int) -> list[ToothSet]:

@@ -152,7 +152,7 @@ class Rack:
 
 
 @primitive("point within limits")
-def _within(point: Any, start: Any, u: Directions, least: Any) -> Any:
+def _beyond_least(point: Any, start: Any, u: Directions, least: Any) -> Any:
     return np.where(ar.dot(point - start, u) >= least * (1 + 1e-12), point, np.nan)
 
 
@@ -211,7 +211,7 @@ CONTACT: StepTable = {
         marked("From {0} drop the perpendicular to the flank of the rack tooth through {1}: point of contact {name}."),
         lambda a, v: (Helper("line", a[0], v),))),
     "E": ("K F flank bottom", "", Rule(
-        "point within the straight flank", _within, ("point", "point", "direction", "ordinate"), "point",
+        "point within the straight flank", _beyond_least, ("point", "point", "direction", "ordinate"), "point",
         marked("Point {0} belongs to the tooth profile if it lies within the straight part of the rack: point {name}."))),
 }
 """Where flank and tooth touch."""
@@ -230,7 +230,7 @@ def generating_plan(rack: Rack, rolls: Any) -> Plan:
 
 
 def drawn_positions(sizes: Plan, radius: Step, alpha: Step, parts: int) -> Plan:
-    """The same for ``parts`` + 1 positions, from the first to the last that touches.
+    """``parts`` + 1 positions of the rack, from the first to the last that touches.
 
     ``sizes`` of the rack, ``radius`` of the pitch circle and profile angle are steps.
     """

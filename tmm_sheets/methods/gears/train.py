@@ -193,26 +193,26 @@ def _check_speeds(train: Train) -> None:
         raise CannotBuild(tell("train: nothing can turn, the meshes lock one another"), tell("look at shafts and carriers"))
     if len(told) != free or len(train.given) != len(told):
         raise CannotBuild(tell("train: degrees of freedom: {free}; of so many links speeds are needed, given are {given}").format(
-            free=free, given=len(train.given)), _way_out(train, len(told) < free))
+            free=free, given=len(train.given)), _what_to_try(train, len(told) < free))
     fixed = np.eye(len(links))[[links.index(name) for name in told]]
     if np.linalg.matrix_rank(np.vstack((rows, fixed))) < len(links):
         raise CannotBuild(tell("train: the speeds of {links} hang together and do not tell those of the others").format(
             links=", ".join(train.given)), tell("give the speed of another link"))
 
 
-def _way_out(train: Train, few: bool) -> str:
+def _what_to_try(train: Train, few: bool) -> str:
     """What to try where too ``few`` speeds are given, or too many: links are held, or turn together though the file says it not."""
     if not few:
         return tell("leave out those that follow from the others")
     held = tell('a link that is held has the speed "0 rpm"')
-    apart = _apart(train)
+    apart = _unconnected_parts(train)
     example = str(apart).replace("'", '"') if apart else '[["2", "3"]]'
     together = tell("wheels and carriers that turn as one stand together in shafts, for example shafts = {example}").format(
         example=example)
     return f"{held}; {together}"
 
 
-def _apart(train: Train) -> list[list[str]]:
+def _unconnected_parts(train: Train) -> list[list[str]]:
     """Wheels and carriers that would join the parts of a train between which neither a mesh nor a shaft is, for example."""
     parts: list[tuple[set[str], Mesh, Mesh]] = []
     for m in train.meshes:

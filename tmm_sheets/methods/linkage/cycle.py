@@ -208,7 +208,7 @@ class Run:
     working: bool = False
 
     def later(self, angle: float, strokes: int = 0) -> Run:
-        """The same run turned on by an angle and a number of strokes."""
+        """The run, turned on by an angle and a number of strokes."""
         return replace(self, begin=self.begin + angle, end=self.end + angle, stroke=self.stroke + strokes)
 
 

@@ -68,7 +68,7 @@ IN_LINE = 1e-6
 """Sine of the angle between crank and rod, or cylinder, below which the input stands in a dead position."""
 
 
-def _far(m: Mechanism, drive: Drive, place: Reals) -> tuple[Any, Any]:
+def _far_circle(m: Mechanism, drive: Drive, place: Reals) -> tuple[Any, Any]:
     """Far hinge, and the radius about it on which the crank pin lies, m."""
     if not drive.slides:
         return m.fixed[drive.far], place
@@ -89,7 +89,7 @@ def driven(m: Mechanism) -> Mechanism:
         return m
     s = np.linspace(*drive.place, 721)
     pivot = m.fixed[crank.pivot]
-    far, radius = _far(m, drive, s)
+    far, radius = _far_circle(m, drive, s)
     with np.errstate(invalid="ignore"):
         pin = ar.arc_arc(far, radius, pivot, crank.length, drive.side)
         sines = np.abs(ar.cross(ar.ray(pivot, pin), ar.ray(far, pin)))

@@ -325,7 +325,7 @@ class GearForce:
         return self.plan["u"] if "u" in self.plan else self.plan.add("u", LINE_OF_ACTION, sense, self.mate, self.angle)
 
     def direction(self, sense: float) -> complex:
-        """The same as a number."""
+        """Unit vector of the force as a number."""
         return complex(self.line(sense).value)
 
 

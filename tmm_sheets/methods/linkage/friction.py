@@ -101,7 +101,7 @@ class Friction:
 
     @property
     def on_crank(self) -> Step:
-        """The same as a moment on the crank, N m."""
+        """All friction as a moment on the crank, N m."""
         return self.power_plan["Mтр"]
 
 

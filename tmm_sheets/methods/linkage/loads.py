@@ -118,7 +118,7 @@ class OutputMotion:
         return sorted(root(ahead(level), run.begin, run.end) for level in levels)
 
     def within(self, begin: float, end: float) -> OutputMotion:
-        """The same motion between two fractions of the way only."""
+        """The motion between two fractions of the way only."""
         runs = []
         for r in self.runs:
             cuts = sorted(c for fraction in (begin, end) if 0 < fraction < 1 for c in self.crossings(r, fraction))
@@ -340,11 +340,11 @@ class Applied:
         for n, (table, sign) in enumerate(zip(law.different, signs, strict=False)):
             d = next(d for d in self.diagrams if d.table is table)
             ordinate: Any = d.curve if isinstance(d.curve, Given) else plan.auxiliary(
-                f"{self.name}{mark} ({n + 1})", ON_WAY, d.curve, self._way(plan, pos, chosen), sense)
+                f"{self.name}{mark} ({n + 1})", ON_WAY, d.curve, self._travelled(plan, pos, chosen), sense)
             terms += [sign, ordinate]
         return plan.auxiliary(name, SIGNED_SUM, *terms)
 
-    def _way(self, plan: Plan, pos: Positions, chosen: Sequence[Given]) -> Any:
+    def _travelled(self, plan: Plan, pos: Positions, chosen: Sequence[Given]) -> Any:
         """Travelled fractions, as a step where they follow from the positions."""
         path = self.by_strokes.motion.path
         if path is None:
@@ -373,7 +373,7 @@ class Applied:
             of_stroke = of_table.setdefault((tuple(table[0]), tuple(table[1])), [run])
             if run is not of_stroke[0] and run.stroke == of_stroke[0].stroke:
                 of_stroke.append(run)
-        return [_between(runs[0].begin, runs[-1].end, self.jumps, law.motion.period) for runs in of_table.values()]
+        return [_angles_between(runs[0].begin, runs[-1].end, self.jumps, law.motion.period) for runs in of_table.values()]
 
     def jump(self, turned: float) -> tuple[float, float, float] | None:
         """Values before and after an angle turned (rad) where they differ, and the one that counts there, N or N m.
@@ -404,7 +404,7 @@ class Applied:
         return self.law(turned, side, signed=False) * (1.0 if self.sign is None else float(self.sign))
 
 
-def _between(begin: float, end: float, jumps: tuple[float, ...], period: float) -> Floats:
+def _angles_between(begin: float, end: float, jumps: tuple[float, ...], period: float) -> Floats:
     """Angles between two, rad, both sides of what jumps there among them."""
     inner = [j for j in (begin + (j - begin) % period for j in jumps) if j < end]
     nodes = np.sort([*np.linspace(begin, end, 241), *(j + s * 1e-9 for j in inner for s in (-1, 1))])

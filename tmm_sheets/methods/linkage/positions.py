@@ -316,10 +316,10 @@ class Passages:
         known, key = self.m.courses, f"{PURPOSE} {g.name}"
         if key not in known:
             gaps = g.kind.gaps(self.m, g)
-            known[key] = gaps.angles if gaps is not None else self._joined(g, self._searched(g)) if g.kind.two_ways else ()
+            known[key] = gaps.angles if gaps is not None else self._merged_angles(g, self._searched(g)) if g.kind.two_ways else ()
         return tuple(known[key])
 
-    def _joined(self, g: StructuralGroup, found: tuple[float, ...]) -> tuple[float, ...]:
+    def _merged_angles(self, g: StructuralGroup, found: tuple[float, ...]) -> tuple[float, ...]:
         """Angles found, but where a group before it has its change point that very angle: what is one has one angle.
 
         Between two that differ by the rounding of the search each group would be on another side of what both pass at once.
@@ -345,7 +345,7 @@ class Passages:
             with np.errstate(invalid="ignore"):
                 low = (values < CLOSE * np.nanmax(values, initial=0.0)) & (np.ptp(values) > 0)
                 low &= (values <= np.roll(values, 1)) & (values <= np.roll(values, -1))
-            touching = (_touch(partial(gap, i), float(near)) for near in sweep[low])
+            touching = (_touching_angle(partial(gap, i), float(near)) for near in sweep[low])
             found += [angle for angle in touching if angle is not None]
         return tuple(sorted(found))
 
@@ -440,7 +440,7 @@ def alone(m: Mechanism, g: StructuralGroup, sides: dict[str, Any] | None = None)
     return found
 
 
-def _touch(gap: Callable[[Any], tuple[Any, Any]], near: float) -> float | None:
+def _touching_angle(gap: Callable[[Any], tuple[Any, Any]], near: float) -> float | None:
     """The angle next to a small value where a gap touches zero, rad; None where it does not.
 
     The root of the gap crosses zero there, with the sign that it has on either side.

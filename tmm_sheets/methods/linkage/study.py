@@ -296,7 +296,7 @@ class Motion:
             p = np.asarray(self.between.positions.points[name].value)
             u = Given(_path(name, p - p[0]), f"path of {name}", "u", over="none",
                       choice="from position 0 to the farthest point, in the sense in which the motion begins")
-            self._points[name] = Output(*(_along(plan, study, name, u) for plan, study in self._both()))
+            self._points[name] = Output(*(_motion_along(plan, study, name, u) for plan, study in self._both()))
         return self._points[name]
 
     def link(self, name: str) -> Output:
@@ -315,7 +315,7 @@ class Motion:
         return (self.plan, self.study), (self._tried, self.between)
 
 
-def _along(plan: Plan, study: Study, name: str, u: Given) -> Three:
+def _motion_along(plan: Plan, study: Study, name: str, u: Given) -> Three:
     p, v, a = (of.points[name] for of in (study.positions, study.velocities, study.accelerations))
     return _three(plan, BEGINNING, p, OF_POINT, name, {"velocity": v, "acceleration": a, "path": u})
 

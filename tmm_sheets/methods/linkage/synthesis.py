@@ -151,20 +151,20 @@ class Synthesis:
             assert c.coefficient is not None
             k = number(c.coefficient)
             lines = [f"θ = 180°·(K − 1)/(K + 1) = 180°·({k} − 1)/({k} + 1) = {number(theta, 5)}°",
-                     f"l_AB = l_AC·sin(θ/2) = {number(x['l_AC'])}·sin {half} = {self._said('l_AB')}",
-                     f"l_CD = H/(2·sin(θ/2)) = {number(x['H'])}/(2·sin {half}) = {self._said('l_CD')}"]
+                     f"l_AB = l_AC·sin(θ/2) = {number(x['l_AC'])}·sin {half} = {self._length_in_words('l_AB')}",
+                     f"l_CD = H/(2·sin(θ/2)) = {number(x['H'])}/(2·sin {half}) = {self._length_in_words('l_CD')}"]
             if "l_CS" in x:
                 assert c.centre_ratio is not None
-                lines.append(f"l_CS = {number(c.centre_ratio)}·l_CD = {self._said('l_CS')}")
+                lines.append(f"l_CS = {number(c.centre_ratio)}·l_CD = {self._length_in_words('l_CS')}")
             return lines
         if c.kind == "geneva":
             assert c.slots is not None
             z, beta, roller = c.slots, f"{number(180 / c.slots, 5)}°", number(float(c.roller or 0.0))
             return [f"β = 180°/z = 180°/{z} = {beta};  φ_m = 180° − 2β = {number(180 - 360 / z, 5)}°",
-                    f"l_AB = l_AC·sin β = {number(x['l_AC'])}·sin {beta} = {self._said('l_AB')}",
-                    f"l_BC = l_AC·cos β = {number(x['l_AC'])}·cos {beta} = {self._said('l_BC')}",
-                    f"r_p = {roller} {tr('m')};  h = l_AB + l_BC + r_p − l_AC = {self._said('h')}",
-                    f"{tr('r_{l}')} = l_AB − 2r_p = {self._said('r_f')}",
+                    f"l_AB = l_AC·sin β = {number(x['l_AC'])}·sin {beta} = {self._length_in_words('l_AB')}",
+                    f"l_BC = l_AC·cos β = {number(x['l_AC'])}·cos {beta} = {self._length_in_words('l_BC')}",
+                    f"r_p = {roller} {tr('m')};  h = l_AB + l_BC + r_p − l_AC = {self._length_in_words('h')}",
+                    f"{tr('r_{l}')} = l_AB − 2r_p = {self._length_in_words('r_f')}",
                     f"k = φ_m/360° = (z − 2)/2z = {number((z - 2) / (2 * z), 4)}"]
         assert c.mean_velocity is not None
         assert c.rod_ratio is not None
@@ -173,14 +173,14 @@ class Synthesis:
                  tr("H = V_m·T/2 = {velocity}·{period}/2 = {stroke} m").format(velocity=number(c.mean_velocity),
                                                                                period=number(period),
                                                                           stroke=number(x["H"])),
-                 f"l_AB = H/2 = {self._said('l_AB')}",
-                 f"l_BC = λ·l_AB = {number(c.rod_ratio)}·{number(self.lengths['l_AB'])} = {self._said('l_BC')}"]
+                 f"l_AB = H/2 = {self._length_in_words('l_AB')}",
+                 f"l_BC = λ·l_AB = {number(c.rod_ratio)}·{number(self.lengths['l_AB'])} = {self._length_in_words('l_BC')}"]
         if "l_BS" in x:
             assert c.centre_ratio is not None
-            lines.append(f"l_BS = {number(c.centre_ratio)}·l_BC = {self._said('l_BS')}")
+            lines.append(f"l_BS = {number(c.centre_ratio)}·l_BC = {self._length_in_words('l_BS')}")
         return lines
 
-    def _said(self, name: str) -> str:
+    def _length_in_words(self, name: str) -> str:
         exact, used = self.exact[name], self.lengths[name]
         rounded = abs(used - exact) >= 1e-12
         said = tr("{exact} m;  taken as {used} m") if rounded else tr("{exact} m")

@@ -174,10 +174,10 @@ def _moments(r: Reader, total: Step) -> Iterator[tuple[list[NoteQuantity], float
 
 def _arm_of(r: Reader, symbol: str, arm: float, step: Step, unit: str = "m") -> NoteQuantity:
     """The arm of a force, whose letters are its index."""
-    return r.measured(f"h_{{{_bared(symbol)}}}", arm, unit, step)
+    return r.measured(f"h_{{{_plain_symbol(symbol)}}}", arm, unit, step)
 
 
-def _bared(symbol: str) -> str:
+def _plain_symbol(symbol: str) -> str:
     return re.sub(r"[_{}^]", "", symbol)
 
 
@@ -300,7 +300,7 @@ def _force_plan(r: Reader, fp: Any) -> dict[str, Any]:
         size = float(abs(value_at(head, r.k) - value_at(tail, r.k)))
         size = 0.0 if is_zero(size, r.project.study.forces.force_size(r.k)) else size
         mm, plain = float(scale.mm(size)), symbol.replace(BAR, "")
-        force = next((s for s in fp.plan if s.name == _bared(plain)), head)
+        force = next((s for s in fp.plan if s.name == _plain_symbol(plain)), head)
         if sought:
             mu, of = NoteQuantity("μ_{F}", scale.mu, "N/mm", step=f"scales.{fp.plan.name}"), r.measured("", size, "N", force)
             results.append({"result": r.by_segment(plain, f"|{tail.name}–{head.name}|", scale, mu, of, force)})

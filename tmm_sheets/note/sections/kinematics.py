@@ -74,7 +74,7 @@ def _of_plan(r: Reader, of: Any, key: str) -> dict[str, Any]:
         f"{key}_several": len(equations) > 1,
         f"{key}-size": _size_by_segment(r, of.plan),
         f"{key}_angular": list(_angular(r, of)),
-        f"{key}_table": _over_positions(r, of),
+        f"{key}_table": _table_of_motion(r, of),
     }
 
 
@@ -320,7 +320,7 @@ def _angular(r: Reader, of: Any) -> Iterator[dict[str, Any]]:
         yield {"angular": said}
 
 
-def _over_positions(r: Reader, of: Any) -> Rows:
+def _table_of_motion(r: Reader, of: Any) -> Rows:
     """Sizes of the vectors from the pole and angular quantities at all drawn positions.
 
     Points of moving guides come last: they are the first to be left out where there is no room.

@@ -136,7 +136,7 @@ def _values(r: Reader, path: list[str], taken: Collection[str]) -> Iterator[tupl
     ``*`` stands for every table of a list, which is called by its name, and for every key of a table, ``#`` for every entry of a
     list, which is called by its number. What the file does not say is what the program takes for it, where it takes it at all.
     """
-    found = list(_below(r.project.variant.data, path, "", "", {}))
+    found = list(_items_below(r.project.variant.data, path, "", "", {}))
     if found or ".".join(path) not in taken:
         yield from found
         return
@@ -145,7 +145,7 @@ def _values(r: Reader, path: list[str], taken: Collection[str]) -> Iterator[tupl
         yield ".".join(path), value, "", {}
 
 
-def _below(data: Any, path: list[str], before: str, name: str, item: Item) -> Iterator[tuple[str, Any, str, Item]]:
+def _items_below(data: Any, path: list[str], before: str, name: str, item: Item) -> Iterator[tuple[str, Any, str, Item]]:
     if not path:
         yield before, data, name, item
         return
@@ -153,12 +153,12 @@ def _below(data: Any, path: list[str], before: str, name: str, item: Item) -> It
     if key in ("*", "#") and isinstance(data, list):
         for i, inner in enumerate(data):
             called = str(inner.get("name", i + 1)) if key == "*" and isinstance(inner, dict) else str(i + 1)
-            yield from _below(inner, rest, f"{before}[{i}]", called, inner if isinstance(inner, dict) else item)
+            yield from _items_below(inner, rest, f"{before}[{i}]", called, inner if isinstance(inner, dict) else item)
     elif key == "*" and isinstance(data, dict):
         for k, inner in data.items():
-            yield from _below(inner, rest, f"{before}.{k}", k.lstrip("z"), item)
+            yield from _items_below(inner, rest, f"{before}.{k}", k.lstrip("z"), item)
     elif isinstance(data, dict) and key in data:
-        yield from _below(data[key], rest, f"{before}.{key}".lstrip("."), name, data if not rest else item)
+        yield from _items_below(data[key], rest, f"{before}.{key}".lstrip("."), name, data if not rest else item)
 
 
 # --- the diagrams of the loads

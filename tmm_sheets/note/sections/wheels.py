@@ -341,7 +341,7 @@ def flywheel_fields(r: Reader) -> dict[str, Any]:
         "comparison": _comparison(r),
         **_reduction(r),
         **_accuracy(r),
-        **_over_positions(r),
+        **_table_of_flywheel(r),
     }  # fmt: skip
 
 
@@ -416,7 +416,7 @@ def _comparison(r: Reader) -> Rows:
     )
 
 
-def _over_positions(r: Reader) -> dict[str, Any]:
+def _table_of_flywheel(r: Reader) -> dict[str, Any]:
     """Reduced moment, works, energy and reduced moment of inertia at the positions, and what the angular acceleration does."""
     fw, total = r.project.flywheel, r.project.flywheel.total_plan
     columns = [

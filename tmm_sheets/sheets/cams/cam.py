@@ -97,7 +97,7 @@ def in_mm(symbol: str) -> str:
 
 
 def in_degrees(symbol: str) -> str:
-    """The same of an angle."""
+    """A symbol of an angle with its unit, as it heads a row."""
     return tr("{symbol}, deg").format(symbol=symbol)
 
 

@@ -83,7 +83,7 @@ def profile(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     _inverted(s, picture)
     if "roller" in cam.traits:
         dense.curve(cam.dense.centres, at(cam.dense.centres.value[:-1]), "centre", closed=True)
-    for k, label in _joined(inv).items():
+    for k, label in _labels_of_positions(inv).items():
         here, centre = s.position(k), s.position(k).at(inv.centres)
         if picture.roller > 0:
             play(here, ["F"], "main" if k == 0 else "construction")
@@ -255,7 +255,7 @@ def _plates(cam: FlatCam) -> list[tuple[complex, complex]]:
     return found
 
 
-def _joined(inv: Inversion) -> dict[int, str]:
+def _labels_of_positions(inv: Inversion) -> dict[int, str]:
     """Numbers of the positions; where two points fall together, one label for both."""
     found: dict[int, str] = {}
     points = inv.centres.value

@@ -255,7 +255,7 @@ def _listed(project: Project, positions: tuple[int, ...]) -> str:
 
 
 def lines(project: Project) -> Iterator[str]:
-    """The same for the person at the machine, for the position plans: those of velocities cross at the same angles."""
+    """Flat crossings of the position plans in words, for messages: those of velocities cross at the same angles."""
     plan, labels = project.study.positions.plan, _labels(project)
     places = [i for i, _ in project.cycle.drawn]
     if not any((np.broadcast_to(c, (len(labels),))[places] > FLAT).any() for c in condition.crossings(plan).values()):

@@ -251,7 +251,7 @@ class Quantity:
 
     @property
     def extent(self) -> float:
-        """The same of the curves alone, without the axis, but for one that is level."""
+        """What the curves alone extend over, without the axis, but for one that is level."""
         return risen(np.concatenate([c.values for c in self.curves])) or self.span
 
 
@@ -267,7 +267,7 @@ class GraphPlace(NamedTuple):
     mu: float
 
 
-def _whole(project: Project) -> float:
+def _axis_length(project: Project) -> float:
     """Length of the axis, in the unit of the abscissae."""
     return float(project.abscissae(np.array(project.cycle.period)))
 
@@ -279,8 +279,8 @@ def angle_axis(project: Project, box: Box) -> tuple[Scale, float]:
     """
     room = box.width - LEFT - RIGHT
     symbol, unit = ("μ_φ", tr("rad/mm")) if project.mechanism.drive is None else ("μ_s", tr("m/mm"))
-    scale = fit(symbol, unit, _whole(project), room)
-    return scale, box.x0 + LEFT + (room - scale.mm(_whole(project))) / 2
+    scale = fit(symbol, unit, _axis_length(project), room)
+    return scale, box.x0 + LEFT + (room - scale.mm(_axis_length(project))) / 2
 
 
 def _shapes(columns: Sequence[Column]) -> list[list[Column]]:
@@ -295,7 +295,7 @@ def _shapes(columns: Sequence[Column]) -> list[list[Column]]:
 
 def _least_width(project: Project) -> float:
     """Width of a graph whose positions are just far enough apart for their numbers, mm."""
-    return LEFT + RIGHT + _whole(project) / reach("", "", _whole(project), PITCH * len(project.cycle.labels)).mu
+    return LEFT + RIGHT + _axis_length(project) / reach("", "", _axis_length(project), PITCH * len(project.cycle.labels)).mu
 
 
 def _least_height(project: Project, column: Column) -> float:
@@ -436,7 +436,7 @@ def _graph(project: Project, canvas: Canvas, place: GraphPlace, beside: bool) ->
     scale = (Scale("", 1.0, "") if zero and not asked else
              pick(project, canvas, q.key, f"μ_{q.letter[0]}", per_mm.format(unit=q.unit), least))
     angle, left = angle_axis(project, place.box)
-    length, top, bottom = angle.mm(_whole(project)), scale.mm(q.high), scale.mm(q.low)
+    length, top, bottom = angle.mm(_axis_length(project)), scale.mm(q.high), scale.mm(q.low)
     places = project.abscissae(cycle.turned)
     o = complex(left, place.box.y0 + BELOW + (place.box.height - ABOVE - BELOW - (top - bottom)) / 2 - bottom)
     at, g = PlanFrame(scale, o, angle), Graph(o)

@@ -406,9 +406,9 @@ def energy_mass(project: Project, canvas: Canvas, box: Box, options: graphs.Opti
     cuts = ascending(np.append(g(points).real, (g.origin.real, box.x1)))
     widest = int(np.argmax(np.diff(cuts)))
     gap = _for_title(Box(float(cuts[widest]), box.y0, float(cuts[widest + 1]), box.y1), g.origin.real, box.x1)
-    title = _beneath(canvas, canvas.title(gap, tr("Energy-mass diagram"), spare=LEADING), 5.0, s.energy, s.inertia)
+    title = _write_beneath(canvas, canvas.title(gap, tr("Energy-mass diagram"), spare=LEADING), 5.0, s.energy, s.inertia)
     if scale is not s.energy:
-        title = _beneath(canvas, title, 3.5, _enlarged(scale.mu / s.energy.mu))
+        title = _write_beneath(canvas, title, 3.5, _enlarged(scale.mu / s.energy.mu))
     curve = fw.energy_mass_curve(fw.samples)
     of = stage(canvas, plan, None, g.place())
     of.curve("points", g(curve))
@@ -478,7 +478,7 @@ def _for_title(gap: Box, low: float, high: float) -> Box:
     return Box(x0, gap.y0, x0 + gap.width + lack, gap.y1)
 
 
-def _beneath(canvas: Canvas, gap: Box, height: float, *said: object) -> Box:
+def _write_beneath(canvas: Canvas, gap: Box, height: float, *said: object) -> Box:
     """Scale factors or words right under a title on as many lines as the gap asks for; returns what is left below."""
     room, text = gap.width - 2.0, ", ".join(str(one).replace(" ", TOGETHER) if len(said) > 1 else str(one) for one in said)
     tried = [wrapped(text, height, count) for count in range(1, 5)]

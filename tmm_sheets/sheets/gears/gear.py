@@ -192,11 +192,11 @@ def sliding(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     left = (box.x0 + box.x1 - whole) / 2
     # rounded: where letters stand must not hang on the last digit
     y1, y2 = np.round(plan["yV1"].value, 9), np.round(plan["yV2"].value, 9)
-    share = _ways(gear, plan) / scale.mu
+    share = _contact_path(gear, plan) / scale.mu
     pole = left + (one.t_pole if way > 0 else gear.beyond_pole) / scale.mu
     xs = np.round(pole + way * share, 9)
     axis = upper.y1 - float(max(y1.max(), y2.max())) - 8
-    s = _along(canvas, gear, plan, complex(pole, axis), scale, way)
+    s = _along_abscissa(canvas, gear, plan, complex(pole, axis), scale, way)
     _axis_line(s, gear, complex(left, axis), whole, pole - left, scale, way)
     ordinate = float(y1[np.argmin(np.abs(share))])
     speeds = placed(canvas, plan, complex(pole, axis), (scale.mu, 1.0), *_turned(way))
@@ -215,7 +215,7 @@ def sliding(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     zero = lower.y1 - 14 - top
     deepest = zero - (lower.y0 + 2)
     origin = complex(left, zero)
-    t = _along(canvas, gear, plan, complex(pole, zero), scale, way)
+    t = _along_abscissa(canvas, gear, plan, complex(pole, zero), scale, way)
     _theta(placed(canvas, gear.smooth_sliding, complex(pole, zero), (scale.mu, mu.mu), *_turned(way)), gear, -deepest * mu.mu, way)
     t.line("K", origin - 6, origin + whole + 8, "axis", "axis")
     pen = t.pen("theta1", "axis")
@@ -235,7 +235,7 @@ def sliding(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     canvas.label(complex(pole, axis + ordinate), tr("{length} mm").format(length=number(ordinate)), away=1 - 0.2j, height=3.5)
 
 
-def _ways(gear: GearPair, plan: Plan) -> Any:
+def _contact_path(gear: GearPair, plan: Plan) -> Any:
     """Ways of the contact point along the line of action from the pole, m."""
     return np.real(plan["K"].value * np.conj(gear.engagement["N1N2"].value))
 
@@ -245,7 +245,7 @@ def _turned(way: int) -> tuple[float, bool]:
     return (0.0, False) if way > 0 else (pi, True)
 
 
-def _along(canvas: Canvas, gear: GearPair, plan: Plan, pole: complex, scale: Scale, way: int) -> PlayerStage:
+def _along_abscissa(canvas: Canvas, gear: GearPair, plan: Plan, pole: complex, scale: Scale, way: int) -> PlayerStage:
     """A plan with the line of action laid along the abscissa, N1N2 to the right or to the left."""
     return placed(canvas, plan, pole, scale.mu, -phase(way * complex(gear.engagement["N1N2"].value)))
 
@@ -258,7 +258,7 @@ def _axis_line(s: PlayerStage, gear: GearPair, origin: complex, whole: float, po
     last = two.t_pole - two.t_low
     ends = [pole + way * t / scale.mu for t in (one.t_low - one.t_pole, -last if gear.internal else last)]
     names = ("A", "B") if gear.driver == 1 else ("B", "A")
-    e = _along(canvas, gear, gear.engagement, origin + pole, scale, way)
+    e = _along_abscissa(canvas, gear, gear.engagement, origin + pole, scale, way)
     e.line("B", origin + ends[0], origin + ends[1], "main", "curve")
     feet = [] if gear.internal else [("N_2", (whole, 0.0)[::way][0])]
     for name, x in (("N_1", (0.0, whole)[::way][0]), ("P_w", pole), *feet, *zip(names, ends, strict=True)):
@@ -268,7 +268,7 @@ def _axis_line(s: PlayerStage, gear: GearPair, origin: complex, whole: float, po
 
 def _theta(s: PlayerStage, gear: GearPair, lowest: float, way: int) -> None:
     """Both curves, cut where they leave the place on their way to minus infinity."""
-    x = _ways(gear, s.plan)
+    x = _contact_path(gear, s.plan)
     for i, onward in ((1, 1), (2, -1)):  # from where each comes up from below
         along, y = x[::onward], np.asarray(s.plan[f"theta{i}"].value)[::onward]
         k = int(np.argmax(y >= lowest))

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 def scheme_place(project: Project, view: ViewPlace) -> BorderNode:
     """Axial view, picture of velocities and end view of a train or a reducer."""
-    views = TrainScheme(_shown(project, view))
+    views = TrainScheme(_shown_train(project, view))
 
     def drawn(width: int, height: int) -> float:
         mu = views.fitted(width, height).mu
@@ -63,7 +63,7 @@ def speeds_place(project: Project, view: ViewPlace) -> BorderNode:
 
 def table_place(project: Project, view: ViewPlace) -> BorderNode:
     """A table, or lines, under its title with the remarks under them: rows from the least height to the greatest of use."""
-    of, head = _shown(project, view), 16.0
+    of, head = _shown_train(project, view), 16.0
     match view.draw.partition(".")[2]:
         case "choice":  # tooth sets with the line that says how they were chosen
             rows, head = len(project.reducer.sets) + 1, 24.0
@@ -80,7 +80,7 @@ def table_place(project: Project, view: ViewPlace) -> BorderNode:
     return table_node(rows, head, (6.0, LARGE), (150.0, 190.0))
 
 
-def _shown(project: Project, view: ViewPlace) -> Train:
+def _shown_train(project: Project, view: ViewPlace) -> Train:
     """The train or reducer that a view shows."""
     train: Train = getattr(project, view.draw.partition(".")[0])
     return train

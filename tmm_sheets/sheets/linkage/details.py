@@ -136,7 +136,7 @@ def with_room(project: Project, view: ViewPlace, node: BorderNode) -> BorderNode
     asked: dict[int, list[list[tuple[float, float]]]] = project.expected[key]
     leaves = list(node.leaves())
     for n, sizes in asked.items():
-        node = _beside(node, leaves[n], _forms(sizes))
+        node = _tree_with_room(node, leaves[n], _forms(sizes))
     return node
 
 
@@ -154,11 +154,11 @@ def _forms(sizes: list[list[tuple[float, float]]]) -> list[Form]:
     return found
 
 
-def _beside(node: BorderNode, figure: BorderNode, forms: Sequence[Form]) -> BorderNode:
+def _tree_with_room(node: BorderNode, figure: BorderNode, forms: Sequence[Form]) -> BorderNode:
     """A tree in which a figure has room for one of some forms."""
     if node is figure:
         return FigureNode(children=[figure], forms=forms, without=WITHOUT_DETAILS)
-    node.children, node.tried = [_beside(child, figure, forms) for child in node.children], {}
+    node.children, node.tried = [_tree_with_room(child, figure, forms) for child in node.children], {}
     return node
 
 

@@ -66,7 +66,7 @@ def motion(project: Project, canvas: Canvas, box: Box, options: Options) -> None
 
 
 def _moving(project: Project, options: Options) -> list[Column]:
-    """The same, refused where nothing of it moves: its scale factors would be of nothing."""
+    """Kinematic diagrams of what moves; refused where nothing does: scale factors would be of nothing."""
     columns = motion_graphs(project, options)
     if columns and not _moves(columns):
         raise CannotBuild(str(project.variant.problem(
@@ -296,13 +296,13 @@ HAIR = 1e-9
 def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Magnitudes of the forces or of the moments that are not given as pressures, over the angle of the crank."""
     loads(project, canvas, box, options)
-    if (said := _many_strokes(project, _shown(project))) is not None:
+    if (said := _working_stroke_hint(project, _diagrams_shown(project))) is not None:
         canvas.note(box, said)
 
 
 def _of_loads(project: Project) -> str:
     """Title of the graph, which says if none of the loads is given by the task."""
-    names = {f.name for f in _shown(project)}
+    names = {f.name for f in _diagrams_shown(project)}
     taken = all((*(f.accepted for f in project.variant.force if f.name in names),
                  *(m.accepted for m in project.variant.moment if m.name in names)))
     return tr("Technological load (taken)") if taken else tr("Technological load")
@@ -311,7 +311,7 @@ def _of_loads(project: Project) -> str:
 @once
 def load_graph(project: Project) -> Column:
     """The graph of these loads; nothing where there are none."""
-    shown, cycle = _shown(project), project.cycle
+    shown, cycle = _diagrams_shown(project), project.cycle
     if not shown:
         return ()
     jumps = [j + s * HAIR for f in shown for j in f.jumps for s in (-1, 1)]  # both sides of each are drawn
@@ -331,12 +331,12 @@ loads = graphs.CycleView(_of_loads, lambda project, options: [column] if (column
 """The graph of these loads."""
 
 
-def _shown(project: Project) -> list[Applied]:
+def _diagrams_shown(project: Project) -> list[Applied]:
     pressures = {f.name for f in project.variant.force if f.bore is not None}
     return [f for f in project.applied if f.name not in pressures]
 
 
-def _many_strokes(project: Project, shown: list[Applied]) -> str | None:
+def _working_stroke_hint(project: Project, shown: list[Applied]) -> str | None:
     """What is said of an output that turns back more than twice a turn: which of its strokes is the working one."""
     cycle, strokes = project.cycle, project.cycle.strokes
     if strokes is None or len(strokes.runs) <= 2 or not any(f.motion is not None and f.point == strokes.output for f in shown):

@@ -178,7 +178,7 @@ def pairs(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
                 _turning(project, s, index, step, force)
             else:
                 _sliding(project, s, index, step, force, half)
-            lines = _told(project, of, index, force, k)
+            lines = _pair_lines(project, of, index, force, k)
             foot = complex(place.centre.real, place.y0 + 3.0 + APART + 6.0 * (len(lines) - 1))
             canvas.lines(foot, lines, 6.0, size_for(lines, place.width - 4.0, 3.5), "centre")
 
@@ -246,7 +246,7 @@ def pair_name(of: Friction, index: str) -> str:
     return tr("Pair {hinge}, reaction F_{{{index}}}").format(hinge=link_marks.indexed(of.pairs[index].name), index=index)
 
 
-def _told(project: Project, of: Friction, index: str, force: complex, k: int) -> list[str]:
+def _pair_lines(project: Project, of: Friction, index: str, force: complex, k: int) -> list[str]:
     """Numbers of a pair beneath it."""
     reaction = f"F_{{{index}}} = {number(abs(force), 5, project.study.forces.force_size(k))} {tr('N')}"
     if of.still(index, k):

@@ -375,7 +375,7 @@ def longest(plan: Plan, shown: Sequence[int]) -> float:
 
 
 def _longest(plan: Plan, shown: Sequence[int]) -> NDArray[np.float64]:
-    """The same of each of them; what is not defined there counts for nothing."""
+    """Longest vector at each position; what is not defined there counts for nothing."""
     lengths = [np.broadcast_to(np.abs(np.subtract(seg.head.value, seg.tail.value)), len(plan.labels)) for seg in plan.segments]
     return np.asarray(np.fmax.reduce(lengths)[np.asarray(shown)])
 

@@ -42,7 +42,7 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     _nominal(project, canvas, box)
     canvas.scales["dead-positions"] = frame.scale
     every = stage(canvas, pos.plan, None, frame)
-    _way_of_crank(project, every)
+    _crank_circle(project, every)
     _paths(project, every, Box(box.x0 + 2.0, box.y0, box.x1 - 2.0, box.y1 - 18.0))
     of = canvas.of
     for i, label in cycle.drawn:
@@ -89,7 +89,7 @@ def _nominal(project: Project, canvas: Canvas, box: Box) -> None:
                         last=project.cycle.labels[cycle.working], angle=number(abs(degrees(strokes.begin)), 2)))
 
 
-def _way_of_crank(project: Project, s: PlayerStage) -> None:
+def _crank_circle(project: Project, s: PlayerStage) -> None:
     """The circle of the crank pin; of a crank that only swings the arc it goes through, and a little more."""
     cycle, c = project.cycle, project.mechanism.crank
     if not cycle.swings:
@@ -420,11 +420,11 @@ def _force_graph(project: Project, s: PlayerStage, box: Box, below: bool) -> Non
     for n, text in enumerate(said):
         lower = 6.25 * n if (room - beside) * u >= 0 else 6.25 * (n - len(said) + 1) - 2.5
         canvas.text(complex(_nearer(start, beside, room), high - lower), text, 3.5, outward)
-    drawn = [_over_way(project, s, strokes, along, diagram, y0, scale.mu) for diagram in diagrams]
+    drawn = [_force_over_path(project, s, strokes, along, diagram, y0, scale.mu) for diagram in diagrams]
     for (line, turned), (tried_at, values) in zip(drawn, diagrams, strict=True):
         canvas.tracing("curve", load, "", graph).polyline(line, "curve")
         later = [turned + turn for turn in np.arange(0, cycle.period, 2 * pi) if np.allclose(force.shown(tried_at + turn), values)]
-        if len(drawn) > 1 and (held := ", ".join(filter(None, (_held(cycle, of_turn) for of_turn in later)))):
+        if len(drawn) > 1 and (held := ", ".join(filter(None, (_positions_within(cycle, of_turn) for of_turn in later)))):
             off = np.abs(line.imag - y0)
             level = np.flatnonzero(off > off.max() - 1e-6)
             highest = line[level[len(level) // 2]]
@@ -452,7 +452,7 @@ def _force_graph(project: Project, s: PlayerStage, box: Box, below: bool) -> Non
         canvas.number(complex(x, y0), complex(x + 0.8, y0 + 1.0), text, 2.5, pitch)
 
 
-def _over_way(project: Project, s: PlayerStage, strokes: Strokes, along: Any, diagram: tuple[Any, Any], y0: float,
+def _force_over_path(project: Project, s: PlayerStage, strokes: Strokes, along: Any, diagram: tuple[Any, Any], y0: float,
               mu: float) -> tuple[Any, Any]:
     """A diagram of a force over the path, from the axis and back to it, mm, and the angles where it acts, rad."""
     turned, values = diagram
@@ -462,7 +462,7 @@ def _over_way(project: Project, s: PlayerStage, strokes: Strokes, along: Any, di
     return np.array([complex(curve[0].real, y0), *curve, complex(curve[-1].real, y0)]), turned[acting]
 
 
-def _held(cycle: Cycle, turned: Any) -> str:
+def _positions_within(cycle: Cycle, turned: Any) -> str:
     """First and last of the positions that lie within a stretch of angles, rad: "9…11"."""
     into = np.mod(np.asarray(cycle.turned) - turned[0], cycle.period)
     inside = sorted((float(t), label) for t, label in zip(into, cycle.labels, strict=True) if t <= turned[-1] - turned[0])
@@ -697,7 +697,7 @@ def enlarged_path(project: Project, canvas: Canvas, box: Box, options: dict[str,
     scale = Scale(plain.symbol, float(f"{plain.mu / times:.6g}"), plain.unit)
     _thin_out(project, canvas, name)
     canvas.title(box, _title_of_path(name), str(scale))
-    along = _along(project, name)
+    along = _path_direction(project, name)
     z = scale.mm(np.asarray(pos.points[name].value)) / along
     middle = complex(z.real.min() + z.real.max(), z.imag.min() + z.imag.max()) / 2
     at = complex(box.centre.real, box.y0 + BESIDE_PATH + 1.0)
@@ -711,7 +711,7 @@ def _title_of_path(name: str) -> str:
     return tr("Positions of point {point} on its path").format(point=link_marks.indexed(name))
 
 
-def _along(project: Project, name: str) -> complex:
+def _path_direction(project: Project, name: str) -> complex:
     """Unit vector along the path of a slider, to the right or, of an upright one, upwards."""
     pos = project.study.positions
     u = complex(pos.guide_directions[on_fixed_guides(pos.mechanism)[name]].at(0))
@@ -745,7 +745,7 @@ def _numbers(canvas: Canvas, point: Step) -> list[Label]:
 
 def _thin_out(project: Project, canvas: Canvas, name: str) -> None:
     """Take the numbers off the path on the plans, but for those nearest to its ends."""
-    asked, along = _numbers(canvas, project.study.positions.points[name]), _along(project, name)
+    asked, along = _numbers(canvas, project.study.positions.points[name]), _path_direction(project, name)
     far = [(label.anchor / along).real for label in asked]
     ends = {asked[int(pick(far))] for pick in (np.argmin, np.argmax)} if asked else set()
     canvas.labels[:] = [label for label in canvas.labels if label not in asked or label in ends]

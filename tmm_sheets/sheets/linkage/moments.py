@@ -56,13 +56,13 @@ class Term(NamedTuple):
 @once
 def of_group(project: Project, g: StructuralGroup) -> list[list[str]]:
     """Equations of a group, with those of its guides' reactions if there is room; none for a group without any."""
-    return _some(group_equations(project, g, guides) for guides in ((True, False) if g.guides else (False,)))
+    return _not_empty(group_equations(project, g, guides) for guides in ((True, False) if g.guides else (False,)))
 
 
 @once
 def of_crank(project: Project) -> list[list[str]]:
     """The equation that gives the balancing moment."""
-    return _some([crank_equation(project)])
+    return _not_empty([crank_equation(project)])
 
 
 @once
@@ -74,11 +74,11 @@ def of_lever(project: Project) -> list[list[str]]:
 
 
 def at_scale(project: Project, scale: Scale) -> list[list[str]]:
-    """The same at the scale factor of the lever."""
-    return _some([lever_lines(project, scale)])
+    """The equation of the lever at its scale factor."""
+    return _not_empty([lever_lines(project, scale)])
 
 
-def _some(texts: Iterable[Iterable[str]]) -> list[list[str]]:
+def _not_empty(texts: Iterable[Iterable[str]]) -> list[list[str]]:
     """The texts that say anything."""
     return [lines for text in texts if (lines := [*text])]
 
@@ -125,13 +125,13 @@ def _forms(texts: Sequence[list[str]], widths: Iterable[float]) -> Iterator[tupl
         yield Form([[part for line in lines for part in broken(line, width, height)]], height, step, 0.0), lines
 
 
-def _apart(canvas: Canvas) -> Iterator[Form]:
+def _equations_without_room(canvas: Canvas) -> Iterator[Form]:
     """Forms of the equations that had no room under their figures; none where all stand there."""
     least = letter(tr(TITLES["moments"]), 5.0).width
     yield from (form._replace(head=HEAD, least=least) for form, _ in _forms([[*canvas.owed]] if canvas.owed else [], WIDTHS))
 
 
-owed = Formulas(TITLES["moments"], "moments", lambda project, canvas: _apart(canvas))
+owed = Formulas(TITLES["moments"], "moments", lambda project, canvas: _equations_without_room(canvas))
 """The equations that had no room under their figures."""
 
 
@@ -194,7 +194,7 @@ def _guided(project: Project, g: StructuralGroup) -> Iterator[str]:
         total = couple.args[0]
         terms = list(_terms(project, total))
         centre, sign = indexed(total.args[0].name), f"M_{{{pair}}}"
-        yield from _passed_on(project, total)
+        yield from _passed_on_couples(project, total)
         yield tr("ΣM_{centre} = {sum} = 0").format(centre=centre, sum=_sum([Term(sign, 1.0 if value > 0 else -1.0, ()), *terms]))
         result = Quantity(sign, abs(value), "N*m")
         yield _worked_out(terms, result, lambda total, _: abs(total)) if len(terms) > 1 else \
@@ -205,7 +205,7 @@ def _guided(project: Project, g: StructuralGroup) -> Iterator[str]:
                            Quantity(f"h_{{{pair}}}", abs(float(arm.at(k))), "m"))
 
 
-def _passed_on(project: Project, total: Step) -> Iterator[str]:
+def _passed_on_couples(project: Project, total: Step) -> Iterator[str]:
     """Couples in a sum that a block passes on from its own loads, such as friction in its hinge: the scheme shows only these."""
     k, own = project.force_index, [id(couple) for couple in project.study.forces.couples.values()]
     for couple in total.args[3::3]:
