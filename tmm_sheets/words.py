@@ -161,7 +161,7 @@ def tr(text: str) -> str:
 
 
 def tr_in(context: str, text: str) -> str:
-    """The text on the paper, where other languages say it differently elsewhere; ``context`` tells the translator where it stands."""
+    """A text of the paper that other languages say differently elsewhere; ``context`` tells the translator where it stands."""
     return _text(_catalogue(_paper.get()).pgettext(context, text), _paper.get())
 
 

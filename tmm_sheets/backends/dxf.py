@@ -67,7 +67,7 @@ class LiveSheet:
         self.found = defaultdict[int, list[int]](list)  # handles in model space by the first mark they stand for
         self.entities: dict[int, str] = {}  # by their handles
         # Two lines make no angle of more than half a turn, and LibreCAD knows no other dimensions of angles.
-        dimensions = [d for d in drawing.dimensions if (d.kind != "angle" or _turned(d) < pi) and (style == COMMON or _stays_in_librecad(d))]
+        dimensions = [d for d in drawing.dimensions if (d.kind != "angle" or _turned(d) < pi) and (style == COMMON or _is_kept(d))]
         wholes: dict[int, Form | Dimension] = {d.first: d for d in dimensions} | {form.first: form for form in drawing.forms}
         lettered = {k for d in dimensions for k in range(*d.label)}
         i = 0
@@ -224,7 +224,7 @@ def _direction(angle: float) -> complex:
     return complex(cos(angle), sin(angle))
 
 
-def _stays_in_librecad(d: Dimension) -> bool:
+def _is_kept(d: Dimension) -> bool:
     """True if LibreCAD, which redraws dimensions, leaves the lettering in place: it sets it along the line or on the arc.
 
     In a drawing for LibreCAD the other dimensions are lines and letters.

@@ -502,7 +502,7 @@ def _derivatives(step: Step, args: tuple[Any, ...], base: Any, moves: list[tuple
             shifts += [(i, unit, h) for unit in ((1.0, 1j) if value.dtype.kind == "c" else (1.0,))]
     replays = _all_at_once(step, values, shifts, snapped, base)
     if replays is None:
-        replays = [replayed_step(step, [v + s * _broadcast_like(h, v) * unit if j == i else v for j, v in enumerate(values)], snapped)
+        replays = [replayed_step(step, [v + s * _shaped_like(h, v) * unit if j == i else v for j, v in enumerate(values)], snapped)
                    for i, unit, h in shifts for s in (1, -1)]
     found: dict[int, Matrices] = {}
     bend = np.zeros(1)
@@ -539,7 +539,7 @@ def _all_at_once(step: Step, values: list[Any], shifts: list[tuple[int, Any, Flo
     return found[:-1]
 
 
-def _broadcast_like(h: Floats, value: Any) -> Any:
+def _shaped_like(h: Floats, value: Any) -> Any:
     """Disturbance in the shape of what it disturbs: one number for one number."""
     return h if np.ndim(value) or len(h) > 1 else h[0]
 

@@ -69,7 +69,7 @@ def interrupt(canvas: Canvas) -> None:
 def _gaps(line: Points, letters: _Letters, near: npt.NDArray[np.intp]) -> tuple[Stretch, ...]:
     """Where a line of chords is interrupted, in shares of its length; nowhere if too little of it would be left."""
     along = run(line)
-    hidden = sorted(_stretches_under(line, along, letters, near))
+    hidden = sorted(_parts_under(line, along, letters, near))
     gaps, reached, length = list[Stretch](), 0.0, float(along[-1])
     for a, b in hidden:
         if gaps and a - reached < SHOWN:
@@ -109,7 +109,7 @@ def _letters(texts: Sequence[Text]) -> _Letters | None:
     return _Letters(at, u, low, high, bounds_of(corners.T).T)
 
 
-def _stretches_under(line: Points, along: npt.NDArray[np.float64], letters: _Letters, near: npt.NDArray[np.intp]) -> Iterator[Stretch]:
+def _parts_under(line: Points, along: npt.NDArray[np.float64], letters: _Letters, near: npt.NDArray[np.intp]) -> Iterator[Stretch]:
     """Stretches of a line of chords that lie under some runs of letters."""
     z = (line - letters.at[near, None]) * letters.u[near, None].conj()
     low, high = letters.low[near, None], letters.high[near, None]

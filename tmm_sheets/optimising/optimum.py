@@ -362,7 +362,7 @@ class Asked:
                               tell("nearest come {numbers}").format(numbers=", ".join(
                                   f"{v.name} = {v.value(x)}" for v, x in zip(self.some, best.numbers, strict=True))))
         trials = tuple(self.made.values())
-        return Optimum(self.some, self.aim, self.most, self.bounds, trials, best, self._present_trial(), isinstance(self.way, Quick))
+        return Optimum(self.some, self.aim, self.most, self.bounds, trials, best, self._given_trial(), isinstance(self.way, Quick))
 
     def trial(self, numbers: tuple[float, ...]) -> Trial:
         """What comes of some numbers."""
@@ -381,7 +381,7 @@ class Asked:
             return Trial(numbers, value, sum(b.missed(found) for b in self.bounds), "" if isfinite(value) else
                          tell("{wish} is not defined").format(wish=self.aim.text))
 
-    def _present_trial(self) -> Trial | None:
+    def _given_trial(self) -> Trial | None:
         """The project as it is."""
         numbers = []
         for v in self.some:

@@ -78,7 +78,7 @@ def read(path: Path, task: str = "") -> list[Enrolled]:
             one = _student_of_row(row, path.parent, task)
             key = files.alike(one.folder), files.alike(one.group)
             if key in lines:
-                raise _wrong_column("student", tell("{name} stands in line {line} already").format(name=one.student, line=lines[key]),
+                raise _bad_column("student", tell("{name} stands in line {line} already").format(name=one.student, line=lines[key]),
                              tell("tell them apart by initials"))
             lines[key] = line
             found.append(one)
@@ -103,7 +103,7 @@ def _with_distinct_folders(students: Sequence[Enrolled]) -> list[Enrolled]:
         groups[files.alike(s.folder)]) > 1 else s for s in students]
 
 
-def _wrong_column(column: str, message: str, hint: str = "") -> BadInput:
+def _bad_column(column: str, message: str, hint: str = "") -> BadInput:
     """What is wrong in a column; its line is told by who reads the table."""
     return BadInput(Problem(message, field=column, hint=hint))
 
@@ -146,10 +146,10 @@ def _student_of_row(row: Mapping[str, str], beside: Path, task: str) -> Enrolled
         try:
             texts[column] = title_text(row.get(column, ""))
         except ValueError as e:
-            raise _wrong_column(column, str(e)) from None
+            raise _bad_column(column, str(e)) from None
     folder = files.name_of(texts["student"], spaced=True)
     if not folder:
-        raise _wrong_column("student", tell("expected a name"))
+        raise _bad_column("student", tell("expected a name"))
     told = {key: row.get(key, "") for key in ("task", "variant", "cipher")}
     project = _project(told, beside, task)
     column = next((key for key in ("cipher", "variant", "task") if told[key]), "task")
@@ -157,7 +157,7 @@ def _student_of_row(row: Mapping[str, str], beside: Path, task: str) -> Enrolled
         catalogue.read(project)
     except (BadInput, CannotBuild) as e:
         said, _, hint = str(e).partition("\n")
-        raise _wrong_column(column, said, hint.strip()) from None
+        raise _bad_column(column, said, hint.strip()) from None
     return Enrolled(texts["student"], texts["group"], project, folder)
 
 
@@ -170,18 +170,18 @@ def _project(told: Mapping[str, str], beside: Path, common: str) -> str:
     if own:
         called = machine if sign else re.split("[:@]", task)[0]
         if not called and own.isdecimal():
-            raise _wrong_column("variant", tell("expected a task beside the variant, such as 3"),
+            raise _bad_column("variant", tell("expected a task beside the variant, such as 3"),
                          tell("or one task for all: --task PROJECT"))
         if not called:
-            raise _wrong_column(column, tell("expected a machine beside the cipher: diesel, press, compressor or crusher"),
+            raise _bad_column(column, tell("expected a machine beside the cipher: diesel, press, compressor or crusher"),
                          tell("in a column task, or for all --task transport/diesel"))
         machine = _machine(called, varied=True)
         family = families.of(machine)
         if family is None:
-            raise _wrong_column("task", tell("{machine} has no variants").format(machine=called))
+            raise _bad_column("task", tell("{machine} has no variants").format(machine=called))
         return f"{machine}{family.rules.separator}{own}"
     if not task:
-        raise _wrong_column("task", tell("expected a task, such as sixbar/3:2"))
+        raise _bad_column("task", tell("expected a task, such as sixbar/3:2"))
     if re.fullmatch(r"\d+:\d+", task):
         return f"sixbar/{task}"
     with suppress(OSError, ValueError):
@@ -200,7 +200,7 @@ def _machine(called: str, varied: bool) -> str:
     names, titles = _words(catalogue.entries(), varied)
     meant = [*(names.get(called.casefold()) or titles.get(called.casefold()) or ())]
     if len(meant) > 1:
-        raise _wrong_column("task", tell('"{task}" may be several').format(task=called), either(meant))
+        raise _bad_column("task", tell('"{task}" may be several').format(task=called), either(meant))
     return meant[0] if meant else called
 
 

@@ -109,7 +109,7 @@ class RuledTable(Table):
         return self
 
 
-def _given_keys(table: Table, *keys: str) -> list[str]:
+def _told_keys(table: Table, *keys: str) -> list[str]:
     """Those of some keys that a table has."""
     return [key for key in keys if getattr(table, key) is not None]
 
@@ -261,7 +261,7 @@ class LegTable(RuledTable):
 
     rules = ((
         marked("expected a leg with outer and length, with guide, or with outer and slot, not {given}"),
-        lambda leg: (given := _given_keys(leg, "outer", "length", "guide", "slot")) not in (
+        lambda leg: (given := _told_keys(leg, "outer", "length", "guide", "slot")) not in (
             ["outer", "length"], ["guide"], ["outer", "slot"]) and {"given": both(given) or tell("none of these")}),)
 
 
@@ -400,10 +400,10 @@ class CycleTable(RuledTable):
         (marked("a crank that swings to an end needs a crank angle as start"),
          lambda cycle: cycle.end is not None and cycle.start == "dead"),
         (marked("a crank that only swings has no strokes and no second turn: leave output, working_sense and turns out"),
-         lambda cycle: cycle.end is not None and (cycle.turns != 1 or _given_keys(cycle, "output", "working_sense"))),
+         lambda cycle: cycle.end is not None and (cycle.turns != 1 or _told_keys(cycle, "output", "working_sense"))),
         (marked("expected 4 positions or more: positions, or working and idle together"), lambda cycle: cycle.parts < 4),
         (marked("expected either positions or working and idle, not both"),
-         lambda cycle: cycle.positions is not None and _given_keys(cycle, "working", "idle")),
+         lambda cycle: cycle.positions is not None and _told_keys(cycle, "working", "idle")),
         (marked("expected {most} positions of a cycle at most, in all turns and extra together, not {count}"),
          lambda cycle: (count := cycle.parts * cycle.turns + len(cycle.extra)) > 2 * MOST_PARTS
          and {"most": 2 * MOST_PARTS, "count": count}),
@@ -427,9 +427,9 @@ class LoadTable(RuledTable):
 
     rules: ClassVar[tuple[Rule, ...]] = (
         (marked("expected one of value, table and tables, not {given}"),
-         lambda load: len(given := _given_keys(load, "value", "table", "tables")) > 1 and {"given": both(given)}),
+         lambda load: len(given := _told_keys(load, "value", "table", "tables")) > 1 and {"given": both(given)}),
         (marked("expected one of value, table and tables, not none"),
-         lambda load: not _given_keys(load, "value", "table", "tables")),
+         lambda load: not _told_keys(load, "value", "table", "tables")),
     )
 
     @property
@@ -557,7 +557,7 @@ class BalancingTable(RuledTable):
         (marked('kind = "gear force" needs {absent} as well'),
          lambda given: given.kind == "gear force" and _listed("absent", _lacking(given, *GEAR_FORCE))),
         (marked('kind = "{kind}" has no {names}'),
-         lambda given: given.kind != "gear force" and (names := _given_keys(given, *GEAR_FORCE))
+         lambda given: given.kind != "gear force" and (names := _told_keys(given, *GEAR_FORCE))
          and {"kind": given.kind, "names": ", ".join(names)}),
     )
 
@@ -638,7 +638,7 @@ class FlywheelTable(RuledTable):
         (marked('expected either delta, for example delta = 0.025, or the inertia of a flywheel that there is, '
                 'for example inertia = "3 kg m2"'), lambda wheel: (wheel.delta is None) == (wheel.inertia is None)),
         (marked("the sizes of the flywheel need {absent} as well"),
-         lambda wheel: (wheel.inertia is None or _given_keys(wheel, *SIZES)) and _listed("absent", _lacking(wheel, *SIZES), both)),
+         lambda wheel: (wheel.inertia is None or _told_keys(wheel, *SIZES)) and _listed("absent", _lacking(wheel, *SIZES), both)),
         (marked("[flywheel.motor] has an efficiency of its own: leave efficiency out"),
          lambda wheel: wheel.efficiency is not None and wheel.motor is not None),
     )
@@ -683,7 +683,7 @@ class GearTable(RuledTable):
         (marked('expected "module" too, for example module = "3.5 mm"'),
          lambda gear: gear.teeth != "reducer" and gear.module is None),
         (marked('teeth = "reducer" takes {given} from [reducer]'),
-         lambda gear: gear.teeth == "reducer" and _listed("given", _given_keys(gear, "module", "addendum", "addenda", "clearance"))),
+         lambda gear: gear.teeth == "reducer" and _listed("given", _told_keys(gear, "module", "addendum", "addenda", "clearance"))),
         (marked("expected either shift or centre_distance; x1 goes with the latter as first_shift"),
          lambda gear: gear.centre_distance is not None and "shift" in gear.model_fields_set),
         (marked("first_shift goes with centre_distance; without it write shift = [x1, x2]"),
@@ -742,7 +742,7 @@ class SynthesisTable(RuledTable):
          lambda given: (absent := _lacking(given, *CONDITIONS[given.kind][0])) and {
              "kind": given.kind, "absent": ", ".join(absent)}),
         (marked('kind = "{kind}" has no {names}'),
-         lambda given: (extra := sorted({*_given_keys(given, *ANY_CONDITION)}.difference(*CONDITIONS[given.kind]))) and {
+         lambda given: (extra := sorted({*_told_keys(given, *ANY_CONDITION)}.difference(*CONDITIONS[given.kind]))) and {
              "kind": given.kind, "names": ", ".join(extra)}),
     )
 
@@ -809,7 +809,7 @@ class ReducerTable(RuledTable):
         (marked("expected a simple_ratio that rises, for example [1.5, 4]"),
          lambda reducer: reducer.simple_ratio is not None and not reducer.simple_ratio[0] <= reducer.simple_ratio[1]),
         (marked('simple = "none" has no {keys}'),
-         lambda reducer: reducer.simple == "none" and _listed("keys", _given_keys(reducer, "simple_module", "simple_ratio"))),
+         lambda reducer: reducer.simple == "none" and _listed("keys", _told_keys(reducer, "simple_module", "simple_ratio"))),
         (marked('expected "simple_module" too, for example simple_module = "10 mm"'),
          lambda reducer: reducer.simple != "none" and reducer.simple_module is None),
         _driven_by(marked('scheme = "{scheme}" is driven by the sun'), ("sun",), "external-internal"),

@@ -288,9 +288,9 @@ class DxfReader:
                 found.extend(self._contents(e, kind, len(entities) - 1, fine))
             except (ValueError, TypeError, AttributeError, ZeroDivisionError, KeyError, IndexError, ArithmeticError):
                 self.unread[kind] += 1  # a broken entity must not hide the others; what was read before an error stays
-        return self._cleaned_space(name, entities, found, fine)
+        return self._clean(name, entities, found, fine)
 
-    def _cleaned_space(self, name: str, entities: list[Entity], found: Sequence[DrawnStroke | Area | Writing], fine: float) -> DrawingSpace:
+    def _clean(self, name: str, entities: list[Entity], found: Sequence[DrawnStroke | Area | Writing], fine: float) -> DrawingSpace:
         """A space without what has no size, whose coordinates are no numbers, or what lies in its own place again and again."""
         strokes = [s for s in found if isinstance(s, DrawnStroke)]
         self.nowhere += len({s.entity for s in strokes if not _are_finite(s.points)})

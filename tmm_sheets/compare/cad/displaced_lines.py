@@ -175,7 +175,7 @@ def shapes(state: Comparison, rest: Sequence[Left]) -> None:
         size = float(np.ptp(e.points.real) + np.ptp(e.points.imag))
         by = middles - e.middle
         alike = (np.abs(by) < ELSEWHERE) & (np.abs(sizes - size) < GROWN * size) & (e.kind != "line")
-        trials += [laid for start in (0j, *by[alike].tolist()) if (laid := _laid_on_free_ink(state, n, free, rest, start)) is not None]
+        trials += [laid for start in (0j, *by[alike].tolist()) if (laid := _laid_freely(state, n, free, rest, start)) is not None]
     _assign(state, trials)
 
 
@@ -188,7 +188,7 @@ def _strokes(state: Comparison, free: KnownLines) -> tuple[Points, Numbers]:
     return np.array([b.centre for b in boxes], dtype=complex), np.array([b.width + b.height for b in boxes])
 
 
-def _laid_on_free_ink(state: Comparison, n: int, free: KnownLines, rest: Sequence[Left], start: complex) -> _Trial | None:
+def _laid_freely(state: Comparison, n: int, free: KnownLines, rest: Sequence[Left], start: complex) -> _Trial | None:
     """An element laid on free ink, from its place or from so far beside it; None where less than half of it has ink there."""
     e, whole = state.elements[n], state.whole(n)
     ours, _, base = state.ours([n])

@@ -98,7 +98,7 @@ def _ink_along(state: Comparison, n: int) -> list[InkStretch]:
     return [InkStretch(p, q, entities[j]) for p, q, j in zip(a.tolist(), b.tolist(), state.entity[piece].tolist(), strict=True)]
 
 
-def _stretches_of_wrong_look(state: Comparison, n: int, rows: list[InkStretch], fits: Callable[[Entity], bool]) -> list[InkStretch] | None:
+def _wrong_stretches(state: Comparison, n: int, rows: list[InkStretch], fits: Callable[[Entity], bool]) -> list[InkStretch] | None:
     """The ink of an element that is none of its own look: none if most is, None where that cannot be told.
 
     Only ink in stretches without another element of the sheet proves anything.
@@ -156,7 +156,7 @@ def _pattern(state: Comparison, n: int, rows: list[InkStretch]) -> Pattern | Non
     whole = max(row.b for row in rows) - min(row.a for row in rows) if n in state.owned else state.whole(n)
     if wanted != "continuous" and of_strokes(solid, whole) == wanted:
         return wanted
-    wrong = _stretches_of_wrong_look(state, n, rows, lambda e: e.pattern == wanted)
+    wrong = _wrong_stretches(state, n, rows, lambda e: e.pattern == wanted)
     if not wrong:
         return wanted if wrong is not None else None
     free = state.free(n)
@@ -200,7 +200,7 @@ def _wrong_widths(state: Comparison, ink: ByElement) -> tuple[list[LookFinding],
         def fits(entity: Entity, low: float = low, high: float = high) -> bool:
             return low <= _width_of(entity) <= high
 
-        if e.style in BROAD | THIN and (wrong := _stretches_of_wrong_look(state, n, rows, fits)):
+        if e.style in BROAD | THIN and (wrong := _wrong_stretches(state, n, rows, fits)):
             widths.setdefault((e.view, e.style), {})[n] = _width_of(max(wrong, key=lambda row: row.b - row.a).entity)
     return [_look(state, ink, view, style, _width_remark(style, list(found.values()), s), list(found))
             for (view, style), found in widths.items()], []

@@ -211,7 +211,7 @@ def summary_of(judged: list[JudgedValue], filled: measured_file.FilledTable) -> 
     return [_counted(judged, filled), *told_last]
 
 
-def _verdict_counts(judged: list[JudgedValue]) -> dict[str, int]:
+def _verdicts(judged: list[JudgedValue]) -> dict[str, int]:
     """How many numbers got each verdict, of those that follow from no mistake."""
     return {v: sum(j.verdict == v for j in judged if j.follows is None) for v in ("green", "amber", "red")}
 
@@ -222,7 +222,7 @@ def _counted(judged: list[JudgedValue], filled: measured_file.FilledTable) -> st
                   "{n} numbers: {green} green, {amber} amber, {red} red, {follow} following from an earlier mistake; {empty} "
                   "left empty",
                   len(judged))
-    return said.format(n=len(judged), **_verdict_counts(judged), follow=sum(j.follows is not None for j in judged), empty=filled.empty)
+    return said.format(n=len(judged), **_verdicts(judged), follow=sum(j.follows is not None for j in judged), empty=filled.empty)
 
 
 def mistakes_as_told(judged: list[JudgedValue]) -> list[list[JudgedValue]]:
@@ -268,7 +268,7 @@ def _too_many(judged: list[JudgedValue]) -> bool:
 
 def advice(judged: list[JudgedValue]) -> list[str]:
     """What to do now."""
-    starts, own = len(mistakes_as_told(judged)), _verdict_counts(judged)
+    starts, own = len(mistakes_as_told(judged)), _verdicts(judged)
     if _too_many(judged):
         return [codes.ANOTHER_MECHANISM().said()]
     if starts:

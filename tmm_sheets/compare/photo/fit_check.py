@@ -139,7 +139,7 @@ def check(m: Map, straight: Map, sides: Seen, ink: Any, lines: ProfileLines, lev
     astray, judged = _displaced_cells(lines, good, some)
     shares = np.array([part.mean() for part in np.split(met, 4)])
     lost = np.array([z for z in astray if not _frame_is_seen(z, sides.sheet, met)], complex)
-    found = FitCheck(float(good.mean()), astray, lost, judged, _between_halves(m, sides, seen), _common_error(lines, o, good), shares,
+    found = FitCheck(float(good.mean()), astray, lost, judged, _between_halves(m, sides, seen), _drift(lines, o, good), shares,
                      np.zeros(0, complex), 0.0, strips_adrift(lines, good, some, shares), rim_error(m, sides))
     if not found.moored:  # refused without that
         return found
@@ -167,7 +167,7 @@ def patches_shifted(seen: Seen, m: Map) -> tuple[Points, float]:
     return z[some], float(np.median(np.abs(by[some]))) if some.any() else 0.0
 
 
-def _common_error(lines: ProfileLines, o: Floats, good: Any) -> float:
+def _drift(lines: ProfileLines, o: Floats, good: Any) -> float:
     """How far lines near each other are off together, mm: the root mean square of the medians of parts of the sheet."""
     upright = np.abs(lines.normals.real) > np.sqrt(0.5)
     along = o * np.sign(np.where(upright, lines.normals.real, lines.normals.imag))  # to the right or up

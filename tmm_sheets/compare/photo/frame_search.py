@@ -177,7 +177,7 @@ def _best(grey: Any, ink: Any, block: ProfileLines) -> FoundFrame | None:
     best: FoundFrame | None = None
     for guess in frame_guesses(grey, ink):
         before, best = best, _better(best, ink, guess, block, level)
-        if best is not None and best is not before and not best.mirrored and (inner := _frame_inside_edge(best, ink, level)) is not None:
+        if best is not None and best is not before and not best.mirrored and (inner := _frame_within(best, ink, level)) is not None:
             best = _better(best, ink, inner, block, level)
         if best is not None and best.score > SURE:
             break
@@ -261,7 +261,7 @@ def _share_of_best_shift(dark: Any) -> Any:
     )
 
 
-def _frame_inside_edge(found: FoundFrame, ink: Any, level: float) -> FrameGuess | None:
+def _frame_within(found: FoundFrame, ink: Any, level: float) -> FrameGuess | None:
     """Where the frame is if sides found are the edge of the paper, or run over to it: then a line runs all along inside them."""
     m = initial_map(found.corners, found.sides, ink.shape)
     t = np.linspace(0.03, 0.97, STATIONS)

@@ -451,7 +451,7 @@ ALIKE = np.radians(0.01)
 """Within it two ways of assembly cannot be told apart by the direction."""
 
 
-def _assemblies_in_words(g: TriadGroup, way: Course) -> dict[str, Any]:
+def _assemblies(g: TriadGroup, way: Course) -> dict[str, Any]:
     """Ways of assembly for a message."""
     return {"group": "-".join(g.links), "side": g.legs[0].corner + g.legs[1].corner, "angle": np.degrees(g.when),
             "told": np.degrees(g.near), "ways": in_a_row(of_reader(f"{np.degrees(np.angle(u)) % 360:.1f}") for _, u in way.found)}
@@ -469,15 +469,16 @@ def _check(g: TriadGroup, way: Course) -> None:
         return  # the limits tell by how much
     if abs(np.angle(way.found[way.taken][1] * np.exp(-1j * g.near))) > SURELY:
         message = tell("group {group}: no way of assembly at crank angle {angle:g} deg has {side} near {told:g} deg")
-        raise CannotBuild(message.format(**_assemblies_in_words(g, way)), tell("take one of {ways} deg").format(**_assemblies_in_words(g, way)))
+        raise CannotBuild(message.format(**_assemblies(g, way)), tell("take one of {ways} deg").format(**_assemblies(g, way)))
     others = [abs(np.angle(u / way.found[way.taken][1])) for n, (_, u) in enumerate(way.found) if n != way.taken]
     if min(others, default=np.pi) < ALIKE:
         message = tell("group {group}: two ways of assembly have {side} in the same direction at crank angle {angle:g} deg")
-        raise CannotBuild(message.format(**_assemblies_in_words(g, way)), tell("tell the direction at another crank angle, with at = \"30 deg\""))
+        raise CannotBuild(message.format(**_assemblies(g, way)),
+                          tell("tell the direction at another crank angle, with at = \"30 deg\""))
     if not way.back:
         message = tell("group {group}: after a turn of the crank it stands in another way of assembly")
         hint = tell("make the crank shorter; ways of assembly at crank angle {angle:g} deg have {side} at {ways} deg")
-        raise CannotBuild(message.format(**_assemblies_in_words(g, way)), hint.format(**_assemblies_in_words(g, way)))
+        raise CannotBuild(message.format(**_assemblies(g, way)), hint.format(**_assemblies(g, way)))
 
 
 def _hint(g: TriadGroup, pos: Positions) -> str:
@@ -486,7 +487,7 @@ def _hint(g: TriadGroup, pos: Positions) -> str:
         return tell("no way of assembly at crank angle {angle:g} deg: lengthen a leg or bring the pivots nearer").format(
             angle=np.degrees(g.when))
     return tell("make the crank shorter, or the legs longer; ways of assembly at crank angle {angle:g} deg have {side} at "
-                "{ways} deg").format(**_assemblies_in_words(g, way))
+                "{ways} deg").format(**_assemblies(g, way))
 
 
 TRIAD = TriadKind()

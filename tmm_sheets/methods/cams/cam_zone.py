@@ -244,7 +244,8 @@ def _lower(p: Any, q: Any) -> Points:
 CURVE = Rule("curve of the analogues", lambda s, ds, right: right * ds + 1j * s, ("ordinate", "ordinate", "number"), "point",
              marked("Join the points with the ordinates S and the abscissae S' by the smooth curve {name}."), source=SOURCE)
 ROCKER_CURVE = Rule("curve of the analogues of a rocker", lambda psi, dpsi, pivot, turn, right, arm: _tip(
-    _rocker_end(pivot, psi, turn), _rise_direction(psi, turn), right, arm, dpsi), ("inclination", "number", "point", "number", "number", "length"),
+    _rocker_end(pivot, psi, turn), _rise_direction(psi, turn), right, arm, dpsi),
+    ("inclination", "number", "point", "number", "number", "length"),
     "point",
     marked("Join the ends of the segments AB·ψ' laid off on the lines of the rocker by the smooth curve {name}."), source=SOURCE)
 TOUCH = Rule("tangent under an angle", lambda s, ds, right: right * ds + 1j * s, ("ordinate", "ordinate", "number"), "point",

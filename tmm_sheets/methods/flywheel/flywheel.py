@@ -211,7 +211,7 @@ class Flywheel(Works):
 
     @planned("flywheel-limit", marked("Flywheel as n → ∞"))
     def limit_plan(self, plan: Plan) -> None:
-        """The flywheel for vanishing intervals: ``J_I∞``, ``J_м∞``, and by how much the drawn one is off: ``ΔJ_м``, ``разность`` in %.
+        """The flywheel for vanishing intervals: ``J_I∞``, ``J_м∞``, and how far the drawn one is off: ``ΔJ_м``, ``разность`` in %.
 
         Of a given flywheel ``δ∞``, and the difference of ``δ``.
         """

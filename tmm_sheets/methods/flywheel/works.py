@@ -21,7 +21,7 @@ from tmm_sheets.words import marked, tr
 
 
 @primitive("gather ordinates", "real")
-def _imaginary_parts(*points: Any) -> Any:
+def _heights(*points: Any) -> Any:
     return np.array([np.imag(p) for p in points])
 
 
@@ -68,7 +68,7 @@ PLOT = Rule(
     marked("At the abscissa {0} lay off the ordinate {1}: a point of the graph."),
     lambda a, v: (Helper("line", complex(a[0], 0), v),),
 )
-MEASURE = Rule("measure ordinates", _imaginary_parts, (), "ordinate", marked("Measure the ordinate of the graph of work {name} = {value}."))
+MEASURE = Rule("measure ordinates", _heights, (), "ordinate", marked("Measure the ordinate of the graph of work {name} = {value}."))
 ON_LINE = Rule("ordinate of a straight line", lambda x, end: x * np.imag(end) / np.real(end), ("ordinate", "point"), "ordinate",
                marked("At the abscissa {0} measure the ordinate of the line {name} = {value}."))
 SUM = Rule("add ordinates", lambda a, b: a + b, ("ordinate", "ordinate"), "ordinate",

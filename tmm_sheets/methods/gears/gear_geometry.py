@@ -41,7 +41,7 @@ def _formula(name: str, compute: Any, takes: tuple[Any, ...], wording: str, unit
     return formula(name, compute, takes, wording, unit, SOURCE, textbook=textbook)
 
 
-def _triangle_angle(side: Any, other: Any, opposite: Any) -> Any:
+def _corner(side: Any, other: Any, opposite: Any) -> Any:
     """Angle of a triangle between two sides, rad; 0 where they do not make one."""
     return np.arccos(np.minimum(np.maximum((side**2 + other**2 - opposite**2) / (2 * side * other), -1.0), 1.0))
 
@@ -70,11 +70,11 @@ OF_PAIR: StepTable = {
     "rho_p": ("N1N2 rho_a'", "ρ_{p#}",
         _formula("radius of curvature at the lowest contact in a ring", lambda line, other: other - line, (N, N), "")),
     "theta_tip1": ("ra1 ra2 a_w", "θ_1",
-        _formula("angle of the crossing tip circles about the pinion", lambda ra1, ra2, a: pi - _triangle_angle(ra1, a, ra2), (N, N, N),
+        _formula("angle of the crossing tip circles about the pinion", lambda ra1, ra2, a: pi - _corner(ra1, a, ra2), (N, N, N),
                  marked("Angle at the centre of the pinion from the line of centres to the crossing of the tip circles (0 without "
                         "one), cos θ_1 = (r_a2² − r_a1² − a_w²)/(2a_wr_a1): {name} = {value}."), "rad")),
     "theta_tip2": ("ra1 ra2 a_w", "θ_2",
-        _formula("angle of the crossing tip circles about the ring", lambda ra1, ra2, a: _triangle_angle(a, ra2, ra1), (N, N, N),
+        _formula("angle of the crossing tip circles about the ring", lambda ra1, ra2, a: _corner(a, ra2, ra1), (N, N, N),
                  marked("The same at the centre of the ring, cos θ_2 = (a_w² + r_a2² − r_a1²)/(2a_wr_a2): {name} = {value}."),
                  "rad")),
     "tips_clear": ("theta_tip1 theta_tip2 alpha_a1 alpha_a2 alpha_w z1 z2", "δ_{12}",

@@ -37,7 +37,7 @@ TAPPET = 10.0, 27.0, 10.0, 34.0
 """Room round the zone of a tappet: at the left, below for the lines that follow, at the right, above for the title, mm."""
 
 
-def _beyond_permitted(z: Zone, rays: bool) -> Any:
+def _beyond_angle(z: Zone, rays: bool) -> Any:
     """What of S(S') lies beyond the permitted angle, m; none where no rays are drawn."""
     return z.tips(z.beyond).value if rays and z.beyond is not None else z.curve.value[:0]
 
@@ -68,7 +68,7 @@ def _zones_of_tappet(cam: TappetCam, rays: bool) -> list[tuple[float, float, Box
     """Width, height and rectangle of the ink of a tappet's zone, m, for each depth that is tried."""
     z, stroke, slope = cam.zone, cam.law.stroke, tan(cam.zone.alpha)
     axis, apex = complex(z.apex.value), complex(z.plan["V"].value if "V" in z.plan else z.apex.value)
-    ink = np.concatenate((z.curve.value.real, _beyond_permitted(z, rays).real, [t.real for t in _tangent_tops(z, apex, stroke)], [0.0]))
+    ink = np.concatenate((z.curve.value.real, _beyond_angle(z, rays).real, [t.real for t in _tangent_tops(z, apex, stroke)], [0.0]))
     left, right = float(ink.min()), float(ink.max())
     depths = [share * (stroke + z.s0) * min(1.0, 0.6 / slope) + max((apex - axis).imag, 0.0) for share in (0.3, 0.22, 0.15)]
     zones = [Box(min(left, apex.real - depth * slope), apex.imag - depth, max(right, apex.real + depth * slope), stroke)
@@ -111,7 +111,7 @@ def of_tappet(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     curve, axis, apex = z.curve.value, complex(z.apex.value), complex(z.plan["V"].value if "V" in z.plan else z.apex.value)
     stroke = cam.law.stroke
     letter_of, rays = options.get("angle", ANGLE), bool(options.get("rays"))
-    beyond, touches, tops = _beyond_permitted(z, rays), _touches(z), _tangent_tops(z, apex, stroke)
+    beyond, touches, tops = _beyond_angle(z, rays), _touches(z), _tangent_tops(z, apex, stroke)
     room, first = box.inset(*TAPPET), len(canvas.marks)
     mu, real = fitted_tappet(cam, rays, room.width, room.height)
     low = complex(apex.real, real.y0)
@@ -226,7 +226,7 @@ def fitted_rocker(cam: RockerCam, rays: bool, box: Box) -> tuple[float, Box, Box
     """
     z, measured = cam.zone, _rocker_lines(cam)
     apex = complex(z.apex.value)
-    ink = Box.around(np.array([complex(z.plan["A"].value), apex, 0j, *z.axis.value, *z.curve.value, *_beyond_permitted(z, rays)]))
+    ink = Box.around(np.array([complex(z.plan["A"].value), apex, 0j, *z.axis.value, *z.curve.value, *_beyond_angle(z, rays)]))
     rooms = box.inset(14, 8, text_width(measured) + 20, 30), box.inset(12, 10 + 7.0 * len(measured), 12, 30)
 
     def fitted(room: Box, share: float) -> tuple[float, float]:

@@ -38,7 +38,7 @@ SHARES = (1.0, 0.75, 0.6, 0.45)
 """Shares of the abscissae's own scale that an enlarged graph can do with."""
 
 
-def _abscissa_scale(x: Scale, span: float, box: Box) -> Scale:
+def _x_scale(x: Scale, span: float, box: Box) -> Scale:
     """The scale factor of abscissae, or a coarser one with which their ``span`` finds room."""
     room = box.width - LEFT - RIGHT
     return x if x.mm(span) <= room + 1e-6 else fit(x.symbol, x.unit, span, room)
@@ -81,7 +81,7 @@ def change(project: Project, canvas: Canvas, box: Box, options: graphs.Options) 
     fw = mertsalov.procedure(project)
     name = tr(options.get("energies", mertsalov.ENERGIES)[0])
     curve = fw.energy_curve(fw.samples)
-    y, x = fw.enlarged(fw.scales.energy, float(np.ptp(np.append(curve, 0.0)))), _abscissa_scale(fw.scales.angle, fw.reduced.period, box)
+    y, x = fw.enlarged(fw.scales.energy, float(np.ptp(np.append(curve, 0.0)))), _x_scale(fw.scales.angle, fw.reduced.period, box)
     times, narrower = fw.scales.energy.mu / y.mu, fw.scales.angle.mu / x.mu
     low, high = min(0.0, times * float(curve.min())), max(0.0, times * float(curve.max()))
     _, g = _begun(canvas, box, tr("Graph of {change}(φ_1), enlarged").format(change=name), (x, y), high)
@@ -128,7 +128,7 @@ def energy_mass(project: Project, canvas: Canvas, box: Box, options: graphs.Opti
     fw = flywheel.with_tangents(project)
     plan, curve, (x, y, first) = fw.energy_mass_plan, fw.energy_mass_curve(fw.samples), larger(fw)
     widest = float(fw.inertia(fw.samples).max()) - first
-    x = _abscissa_scale(x, widest, box)
+    x = _x_scale(x, widest, box)
     times, narrower = fw.scales.energy.mu / y.mu, fw.scales.inertia.mu / x.mu
 
     def stretched(z: Points) -> Points:
@@ -180,7 +180,7 @@ def graph(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -
                           tell("leave the view crank_speed.graph out"))
     plan, mean = fw.speed_plan, fw.reduced.omega1
     highest, lowest = (float(plan[f"ω_{name}"].value) for name in ("max", "min"))
-    x = _abscissa_scale(fw.scales.angle, fw.reduced.period, box)
+    x = _x_scale(fw.scales.angle, fw.reduced.period, box)
     y = fit("μ_ω", tr("s^{−1}/mm"), highest - lowest, box.height - TITLE - BELOW - ABOVE)
     high, low = y.mm(highest - mean), y.mm(lowest - mean)
     _, g = _begun(canvas, box, tr("Graph of the angular velocity ω_1(φ_1)"), (x, y), high)
