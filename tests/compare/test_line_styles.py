@@ -68,7 +68,7 @@ def test_what_is_wrong_is_told_in_a_row_for_each_view_and_kind(tmp_path):
         (e.number, e.view.name, said) for e, (_, said) in SPOILED.items()}
     assert len(looks) == len({(e.view, said) for e, (_, said) in SPOILED.items()})
     assert {f.verdict for f in found.outcome.findings} == {"green"}
-    report = cad_report.report("cam", tmp_path / "student.dxf", found, 0.25)
+    report = cad_report.report("cam", tmp_path / "student.dxf", found)
     text, tree = report.text, report.tree
     assert all(said in text for _, said in SPOILED.values())
     assert "; 6 of another type or width of line" in text

@@ -79,14 +79,14 @@ def test_killed_between_two_objects(store, monkeypatch):
     """The record is there before what it tells of: the next build makes the rest, and takes nothing for changed by hand."""
     outlet = ObjectStore(Url("works://bucket/x"))
     made = {"sheet1.svg": b"1", "sheet2.svg": b"2"}
-    put = ObjectStore._put
+    put = ObjectStore._store_file
 
     def killed(self, name, data):
         if name == "sheet1.svg":
             raise KeyboardInterrupt
         put(self, name, data)
 
-    monkeypatch.setattr(ObjectStore, "_put", killed)
+    monkeypatch.setattr(ObjectStore, "_store_file", killed)
     with pytest.raises(KeyboardInterrupt):
         build_store.put(outlet, made, False, "inputs")
     monkeypatch.undo()

@@ -302,7 +302,7 @@ def _of_arcs(phi: Reals, branch: Reals, l1: float, ahead: float, pivot: complex,
 @primitive("branch of arc and line", "real")
 def branch_of_line(phi: Reals, l1: float, ahead: float, length: float, pivot: complex, through: complex, guide: float, side: Signs,
                    at: float, cut: float, sense: float, follow: float) -> Any:
-    """The branch of a rod on a guide, as :func:`branch_of_arcs` has that of two arcs."""
+    """What the branch of two arcs is, for a rod on a guide."""
     return gaps_of_line(l1, ahead, length, pivot, through, guide).branch(phi, side, at, cut, sense, bool(follow))
 
 
