@@ -18,7 +18,7 @@ from tmm_sheets.compare.cad.cad_comparison import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
 from tmm_sheets.compare.diagnosis.built_plan import SHOWN, told_view
 from tmm_sheets.compare.diagnosis.hypotheses import built_otherwise
-from tmm_sheets.compare.elements import Element, ElementView, drawn
+from tmm_sheets.compare.elements import Element, ElementView, drawn, grouped
 from tmm_sheets.compare.findings import (
     FindingRecord,
     Report,
@@ -152,11 +152,23 @@ def _summary(found: ExaminedDrawing, records: Sequence[FindingRecord]) -> str:
 
 
 def _deviations(found: ExaminedDrawing) -> list[tuple[str, ...]]:
-    """A row for every element that is not green, except those of missing views."""
+    """A row for every element that is not green, except those of missing views; one for all in a view that a mistake led on to."""
     entities = found.space.entities
-    return [(str(f.element.number), f.element.view.name, called(f.element), f.what, said_verdict(f.verdict),
-             _found_by([entities[k] for k in f.entities]))
-            for f in worst(found.outcome.findings) if f.element.view not in found.lost]
+    bad = [f for f in worst(found.outcome.findings) if f.element.view not in found.lost]
+    rows: list[tuple[str, ...]] = [
+        (str(f.element.number), f.element.view.name, called(f.element), f.what, said_verdict(f.verdict),
+         _found_by([entities[k] for k in f.entities])) for f in bad if not f.follows]
+    for view, led in grouped([f for f in bad if f.follows], lambda f: f.element.view).items():
+        by = codes.AS_FOLLOWS(by=millimetres(max(f.deviation for f in led)))
+        numbers = sorted(f.element.number for f in led)
+        rows.append(("", view.name, _numbered(tell("lines"), numbers), by.said(), said_verdict("red"), ""))
+    return rows
+
+
+def _numbered(lines: str, numbers: Sequence[int]) -> str:
+    """Some lines and the numbers of their elements."""
+    said = tell("{lines}, {n}: no. {numbers}, ...") if len(numbers) > MANY else tell("{lines}: no. {numbers}")
+    return said.format(lines=lines, n=len(numbers), numbers=", ".join(map(str, numbers[:MANY])))
 
 
 def _extras(outcome: CadOutcome) -> list[tuple[str, ...]]:
@@ -174,12 +186,9 @@ def _looks(found: ExaminedDrawing) -> list[tuple[str, ...]]:
     """A row for every group of lines of a wrong type or width."""
     rows: list[tuple[str, ...]] = []
     for k, look in enumerate(found.outcome.looks, 1):
-        size, first = len(look.elements), ", ".join(map(str, look.elements[:MANY]))
-        said = tell("{lines}, {n}: no. {numbers}, ...") if size > MANY else tell("{lines}: no. {numbers}")
-        which = said.format(lines=look.lines, n=size, numbers=first)
         where = _found_by(look.entities)
         view = look.view.name if look.view is not None else tell("all views")
-        rows.append((f"~{k}", view, which, look.what, said_verdict(look.verdict), where))
+        rows.append((f"~{k}", view, _numbered(look.lines, look.elements), look.what, said_verdict(look.verdict), where))
     return rows
 
 
