@@ -10,9 +10,10 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.photo import arrow_heads, tracing
+from tmm_sheets.compare.photo import arrow_heads, displacement, tracing
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.line_ends import with_edges
+from tmm_sheets.compare.photo.own_place import strips
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.small_marks import displaced_dots
 from tmm_sheets.compare.photo.traces import InkTrace, Owners, fill
@@ -533,6 +534,60 @@ def test_a_dot_in_a_black_and_white_picture_may_be_swollen(usual, wide, found):
     assert stands([dot(1, CORNER, 0.35)], [], ink, np.zeros_like(ink), usual) == found
 
 
+def on_a_line(places, radius=0.6, heads=(), usual=180):
+    """Dots of that radius upon a thin line through CORNER and a thick one beside, where they are found, by number."""
+    ink, lines = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
+    for a, b, style in ((100 + 440j, 160 + 440j, "thin"), (100 + 444j, 160 + 444j, "main")):
+        draw(ink, a, b, style)
+        ends = ((round(z.real * SCALE), round((594 - z.imag) * SCALE)) for z in (a, b))
+        cv2.line(lines, *ends, 255, round(SCALE * line_type(style).width))
+    for by in places:
+        for k in range(8):
+            draw(ink, CORNER + by, CORNER + by + (radius - 0.2) * np.exp(1j * k), "main")
+    for tip in heads:
+        fill_head(ink, CORNER + tip, 1)
+    words = np.zeros((ROWS, COLUMNS), np.uint8)
+    found = displaced_dots([dot(1, CORNER, radius)], [], lines, lines, ink, words, np.zeros((1, 1), bool), usual)
+    return {t.element.number: complex(np.round(t.shift, 0)) for t in found}
+
+
+@pytest.mark.parametrize(
+    ("places", "radius", "found"),
+    [
+        ([3 + 0j], 0.6, {1: 3 + 0j}),  # a bump on its line
+        ([-3 + 0j], 0.6, {1: -3 + 0j}),
+        ([-2 + 0.5j], 0.6, {1: -2 + 0j}),  # half upon it
+        ([], 0.6, {}),
+        ([0j], 0.6, {}),
+        ([0.3 + 0j, 3 + 0j], 0.6, {}),  # one too many, but this is in its place
+        ([1.1 + 0j], 0.6, {}),  # nearly in its place
+        ([1 + 4j], 0.5, {}),  # in the thick line: no wider than a pencil makes that
+        ([1 + 4.5j], 0.6, {1: 1 + 5j}),  # at its edge
+        ([7 + 0j], 0.6, {}),
+    ],
+)
+def test_a_dot_upon_a_line_is_a_bump(places, radius, found):
+    assert on_a_line(places, radius) == found
+
+
+def test_a_head_upon_a_line_and_black_lines_are_no_bumps():
+    assert on_a_line([], heads=[2 + 0j]) == {}
+    assert on_a_line([3 + 0j], usual=250) == {}  # a picture without grey
+
+
+@pytest.mark.parametrize("barred", [True, False])
+def test_a_bar_over_a_letter_is_no_dot(barred):
+    """As wide as it is long it is, blurred; its letter is known to have one."""
+    ink, nothing = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
+    draw(ink, CORNER + 3.7 + 3j, CORNER + 4.3 + 3j, "main", 230)
+    corners = CORNER + 3 - 2j + np.array([0, 2, 2 + 4j, 4j])
+    letter = Element(2, VIEW, "G", "text", corners, "text", text="G", height=4.0, marks=(Text(corners[0], "G", 4.0),),
+                     pieces=(CORNER + np.array([3.5 + 3j, 4.5 + 3j]),) if barred else ())  # fmt: skip
+    bars = tracing.bars([letter], ink)
+    found = displaced_dots([dot(1, CORNER)], [], nothing, bars, ink, nothing, np.zeros((1, 1), bool), 180, bars=bars)
+    assert bool(found) != barred
+
+
 @pytest.mark.parametrize(("astray", "meant"), [((), {1}), ((1,), {1}), ((2,), {2}), ((1, 2), {1}), ((3,), {1})])
 def test_of_two_dots_the_one_is_meant_whose_line_is_not_in_its_place(astray, meant):
     rods = [np.array([CORNER - 25 + k * 2j, CORNER + k * 2j]) for k in range(3)]
@@ -657,6 +712,33 @@ def test_a_small_circle_a_little_off_is_told_where_no_others_are_and_a_construct
         assert judge(t, 0.25, 0.15).verdict == verdict
 
 
+@pytest.mark.parametrize(
+    ("end", "dotted", "usual", "status"),
+    [
+        (CORNER, True, 100, "measured"),
+        (CORNER - 1.5, True, 100, "measured"),  # it stops short, but hardly
+        (CORNER - 7, True, 100, "covered"),
+        (CORNER + 5j, True, 100, "covered"),
+        (CORNER - 7, False, 100, "measured"),  # a helper line ends anywhere
+        (CORNER - 7, True, 250, "measured"),  # black and white eats thin lines
+    ],
+)
+def test_a_line_that_others_cover_must_be_seen_to_the_dot_where_it_ends(end, dotted, usual, status):
+    """Another line runs along most of it, and was taken for it."""
+    begin = CORNER - 18
+    e, along = line(1, begin, CORNER, "construction"), line(2, begin - 5, CORNER - 5 + 0.2j, "construction")
+    ink, owners = paper(), Owners(ROWS, COLUMNS)
+    for one, to in ((e, end), (along, along.points[1])):
+        owners.add(one, one.points)
+        draw(ink, one.points[0], to, one.style)
+    (strip,) = strips([e], ink, owners, np.zeros((1, 1), bool))
+    alone = tracing.alone_on(strip, np.array([CORNER] if dotted else [], complex))
+    traces = [InkTrace(one, "measured", at=one.points, darkness=usual, covered=1.0) for one in (e, along)]
+    nothing = np.zeros_like(ink)
+    found = tracing.doubted(traces, {} if alone is None else {1: alone}, ink, nothing, nothing, owners, 10)
+    assert [t.status for t in found] == [status, "measured"]
+
+
 @pytest.mark.parametrize(("dark", "status"), [(20, "covered"), (60, "measured")])
 def test_a_line_whose_place_is_far_paler_than_its_kind_is_not_there(dark, status):
     """Ends of a hatching stand in its place."""
@@ -689,3 +771,14 @@ def test_a_line_that_others_hide_up_to_bare_paper_before_its_end_is_short(short,
     f = judge(found[0], 0.25, 0.15)
     assert f.verdict == ("amber" if said else "green")
     assert said in f.what
+
+
+@pytest.mark.parametrize(("begin", "end", "covered", "swung"), [
+    (0.3, 4j, 1.0, True),
+    (3j, 4j, 1.0, False),  # no end stays
+    (0, 1j, 1.0, False),  # hardly turned
+    (0.3, 4j, 0.9, False),
+])  # fmt: skip
+def test_a_line_of_which_little_is_seen_was_turned_about_an_end_that_stays(begin, end, covered, swung):
+    e = line(1, CORNER, CORNER + 40)
+    assert displacement.swung(InkTrace(e, "measured", covered=covered, at=e.points + np.array([begin, end]))) is swung

@@ -31,12 +31,15 @@ from tmm_sheets.compare.photo.traces import (
 from tmm_sheets.drawing.marks import Points
 
 THERE = 0.8  # share of its ink in its own place from which on an element is not sought elsewhere
+TRIES = 500  # guesses from stations picked at random
 KNOWN, PARTED = 0.4, 0.12
 """Least share of a line that must be seen for it to be known elsewhere; of one that parts from a stroke only its end is seen."""
 SEEN = 0.1  # weight of how much of an element is seen, beside the share of it that has ink
 PLENTY = 40.0  # mm of a line by which it is known, however much of it is hidden
 DARKER, FULLER = 1.25, 0.12
 """How much darker or more complete an element must be elsewhere for it not to be believed in its own place."""
+SURE, PIVOT = 0.95, 0.8
+"""Of a line that was turned, little of which is seen: least share of its ink, mm by which the end is off that stays."""
 EDGE, HALF = 0.4, 0.5
 """mm to either side of a line within which others' ink may be taken for its own, and share of its length that may be so."""
 RIDGE = 1.0  # mm beyond such a line within which there is paper again
@@ -106,10 +109,21 @@ def better_match(t: InkTrace, s: Stations, left: Any, wiped: Any, ink: Any, owne
         darker = _best_displaced(t.element, s, profile, unknown, offsets, DARKER * t.darkness)
         if darker is not None and darker.covered >= NEARLY_ALL:
             return darker
-    fuller = _best_displaced(t.element, s, profile, unknown, offsets, level)
-    if fuller is None or fuller.covered < max(NEARLY_ALL, t.covered + FULLER) or fuller.darkness < t.darkness / DARKER:
-        return None
-    return fuller
+    for least in (KNOWN, PARTED):
+        fuller = _best_displaced(t.element, s, profile, unknown, offsets, level, least)
+        if fuller is None or fuller.covered < max(NEARLY_ALL, t.covered + FULLER):
+            continue
+        if fuller.darkness >= t.darkness / DARKER if least == KNOWN else swung(fuller) and fuller.darkness >= PALE * t.darkness:
+            return fuller
+    return None
+
+
+def swung(t: InkTrace) -> bool:
+    """Whether a straight line that was found elsewhere has one end in its place: then little of it is enough to know it by."""
+    if t.element.kind != "line" or t.at is None or t.covered < SURE:
+        return False
+    off = np.abs(t.at - t.element.points)
+    return bool(off.min() <= PIVOT < off.max() / 2)
 
 
 def beside(t: InkTrace, s: Stations, ink: Any, lines: Any, taken: Any, owners: Owners, level: float) -> InkTrace | None:
@@ -178,7 +192,7 @@ def _best_displaced(e: Element, s: Stations, profile: Any, unknown: Any, offsets
     hit = _hit(profile, level)
     base = s.base()
     n, k = base.shape
-    x = _guesses(e, s, base, offsets)
+    x = _guesses(e, s, base, profile * (profile > level), offsets)
     o = x @ base.T
     worst = np.abs(o).max(1)
     inside = worst <= reach
@@ -213,16 +227,34 @@ def _hit(profile: Any, level: float) -> Any:
     return cv2.dilate((profile > level).astype(np.uint8), np.ones((1, 7), np.uint8)) > 0
 
 
-def _guesses(e: Element, s: Stations, base: Floats, offsets: Floats) -> Floats:
-    """Displacements to try, (n, k): of a straight line both its ends anywhere, of others shifts and sizes."""
-    grid = np.arange(offsets[0], offsets[-1] + 0.01, 0.4)
-    x, y = (part.ravel() for part in np.meshgrid(grid, grid))
+def _guesses(e: Element, s: Stations, base: Floats, dark: Any, offsets: Floats) -> Floats:
+    """Displacements to try, (n, k): none, parallel shifts, turns about an end, and such as bring some random stations onto ink."""
+    n, k = base.shape
+    guesses: list[Floats] = [np.zeros((1, k))]
+    if not k:
+        return guesses[0]
+    reach = float(offsets[-1])
+    grid = np.arange(-reach, reach + 0.01, 0.4)
     if e.kind == "line":
-        share = np.linspace(0, 1, len(base))[:, None]
-        ways = (1 - share) * x + share * y
+        share = np.linspace(0, 1, n)[:, None]
+        ways = np.hstack((np.repeat(grid[None, :], n, 0), share * grid, (1 - share) * grid))
+        guesses.append(np.linalg.lstsq(base, ways, rcond=None)[0].T)
     else:
-        ways = np.hstack((s.raw[:, :2] @ np.stack((x, y)), s.raw[:, 3:] * grid))
-    return np.asarray(np.linalg.lstsq(base, ways, rcond=None)[0].T)
+        gx, gy = np.meshgrid(grid, grid)
+        shifts = np.stack((gx.ravel(), gy.ravel()))
+        guesses.append(np.linalg.lstsq(base, s.raw[:, :2] @ shifts, rcond=None)[0].T)
+        guesses.append(np.linalg.lstsq(base, s.raw[:, 3:] * grid, rcond=None)[0].T)
+    rows = np.flatnonzero(dark.any(1))
+    if len(rows) > k:
+        rng = np.random.default_rng(e.number)
+        tries = rows[rng.integers(len(rows), size=(TRIES, k))]
+        weight = dark[tries].astype(np.float64)
+        pick = (weight.cumsum(2) > rng.uniform(size=(TRIES, k, 1)) * weight.sum(2, keepdims=True)).argmax(2)
+        a, b = base[tries], offsets[pick]
+        good = np.abs(np.linalg.det(a)) > 0.05
+        if good.any():
+            guesses.append(np.linalg.solve(a[good], b[good][:, :, None])[:, :, 0])
+    return np.concatenate(guesses)
 
 
 EXTRA = 8.0  # mm, least extent of ink that is reported

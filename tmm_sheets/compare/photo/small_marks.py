@@ -2,7 +2,8 @@
 
 A dot is too small to be measured among lines, but one in a wrong place is a round spot that belongs to nothing, and its own place
 has none: about it the picture is taken for lines and a dot, each as dark as fits best. A spot alone is no displaced dot where the
-dot is seen in its place; where lines cross, a small one shows no more than they do, and the spot is taken for it. Of several dots
+dot is seen in its place; where lines cross, a small one shows no more than they do, and the spot is taken for it. One upon a line
+is a bump: all over as dark as a dot where nothing as wide is drawn, and it ends all round, which a head does not. Of several dots
 that may be meant it is one whose line is not in its place either, the one least seen in its place, or the nearest.
 
 What lettering says is not read, so ink of its size that belongs to nothing, within some millimetres, is taken for it: letters on
@@ -26,7 +27,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo.lost_ink import Mask, at
 from tmm_sheets.compare.photo.profiles import NO_GREY, SCALE, Region, pixels, regions, sample, window
-from tmm_sheets.compare.photo.sheet_map import Floats
+from tmm_sheets.compare.photo.sheet_map import PAPER, Floats
 from tmm_sheets.compare.photo.traces import ABOUT_INK, FARTHEST_OFF, InkTrace, Status, fill, painted, seen_at
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput
@@ -63,12 +64,23 @@ COVERED = 0.3
 """Share of a small dot under lines from which on its place, where they cross, is dark with it or without."""
 TELLS = 0.15
 """Least share of a dot that lines do not show as well for anything to be told of its place."""
+RIM = 0.1
+"""mm about the edge of a dot that are paler: blur."""
+PENCIL, MEET = 0.3, 5
+"""mm by which a dot drawn by hand may be larger or aside; pixels between lines that blur fills."""
+BUMP, OWN, SPREAD, WITHIN = 0.5, 0.1, 0.4, 0.75
+"""Darkness all over a dot on lines beyond what they have, as a share of the usual, and such beyond which it is in its place; mm by
+which the places where its middle may be are wider than its radius; and how much of its radius a head beside it is wide."""
+BEYOND, PALER, ODD, CLEAR = 0.45, 0.4, 0.07, 0.25
+"""mm beyond its edge where ink ends that is darker than this share of the usual; share of the way round there that may have more
+ink than lines have, and least share that is bare."""
+RING = np.exp(2j * np.pi * np.arange(32) / 32)
 RAYS = np.exp(2j * np.pi * np.arange(16) / 16) * np.linspace(0, ABOUT_INK, 6)[:, None]  # places about a spot, mm
 
 
 def displaced_dots(
     some: Sequence[Element], rods: Sequence[Points], lines: Any, taken: Any, ink: Any, words: Any, hidden: Mask, usual: float,
-    astray: Sequence[Points] = (),
+    astray: Sequence[Points] = (), bars: Any = None,
 ) -> list[InkTrace]:
     """Traces of dots that stand beside their places.
 
@@ -92,6 +104,8 @@ def displaced_dots(
         How dark lines usually are.
     astray
         Both ends of those lines of ``rods`` that are not in their places.
+    bars
+        A picture of the bars over letters, 255 there: as wide as a dot where they are blurred.
     """
     found: dict[complex, list[tuple[bool, int, float, Element]]] = {}
     lost = np.array([z for ends in astray for z in ends], complex)
@@ -101,6 +115,8 @@ def displaced_dots(
         if (there := _seen_in_place(e, lines, ink, words)) > least:
             continue
         spots = _spots(e, (begins, ends), taken, ink, words, FAINT * usual, least)
+        if e.radius >= SMALL and not len(spots) and usual < NO_GREY:
+            spots = _dot_like_places(e, some, lines, ink, words if bars is None else np.maximum(words, bars), usual)
         for spot in sorted(spots[~at(spots, hidden)], key=lambda z: abs(z - e.centre))[:1]:
             place = next((z for z in found if abs(z - spot) < ASIDE), complex(spot))  # seen from another dot
             at_home = not (np.abs(lost - e.centre) <= ASIDE).any()
@@ -167,6 +183,49 @@ def _seen_in_place(e: Element, lines: Any, ink: Any, words: Any) -> float:
         if rest @ rest > TELLS * float((_blurred(disc) ** 2).sum()):
             best = float(np.fmax(best, rest @ y[seen] / (rest @ rest)))
     return best
+
+
+def _dot_like_places(e: Element, some: Sequence[Element], lines: Any, ink: Any, words: Any, usual: float) -> Points:
+    """Middles of the places about a dot's that are as wide as it is all round, on lines or not, where nothing so wide is drawn.
+
+    None where its own place is such a one.
+    """
+    here = window(e.centre, AROUND)
+    top, left = here[0].start, here[1].start
+    row, column = np.mgrid[: ink[here].shape[0], : ink[here].shape[1]]
+    z = (left + column + 0.5) / SCALE + 1j * (PAPER.y1 - (top + row + 0.5) / SCALE)
+    # A pencil's reach wider; what nearly meets runs together.
+    near, joined = np.ones((3, 3), np.uint8), cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (MEET, MEET))
+    drawn = cv2.dilate(lines[here], near)
+    for other in some:
+        if other is not e and abs(other.centre - e.centre) < FARTHEST_OFF + ROOM:
+            drawn[np.abs(z - other.centre) <= other.radius + PENCIL] = 255
+    drawn = cv2.morphologyEx(drawn, cv2.MORPH_CLOSE, joined)
+    disc, small = _disc(e.radius - RIM), _disc(WITHIN * (e.radius - RIM))
+    thick = cv2.erode(ink[here], disc) / usual - cv2.erode(_blurred(drawn), disc)
+    strokes = cv2.erode(ink[here], small) / usual - cv2.erode(_blurred(lines[here]), small)
+    away = np.abs(z - e.centre)
+    if thick[away <= ASIDE].max(initial=0.0) > OWN:
+        return np.zeros(0, complex)
+    there = (thick > BUMP) & (away > max(LEAST, e.radius + ASIDE)) & (away < FARTHEST_OFF) & (words[here] == 0)
+    known = np.maximum(drawn, words[here])
+    out = []
+    for region in regions(there, left, top)[1]:
+        spot = region.middle
+        around = pixels(spot + (e.radius + BEYOND) * RING)
+        local = around - complex(left, top)
+        dark, of_others = sample(ink, around) > PALER * usual, sample(known, local) > 0
+        odd = (dark & ~of_others) | (sample(strokes, local) > PALER)
+        narrow = max(region.box.width, region.box.height) <= e.radius + SPREAD
+        if narrow and odd.mean() <= ODD and (~dark & ~of_others).mean() >= CLEAR:
+            out.append(spot)
+    return np.array(out, complex)
+
+
+def _disc(radius: float) -> Any:
+    """The pixels of a disc."""
+    side = np.arange(-int(radius * SCALE), int(radius * SCALE) + 1)
+    return (np.hypot(side, side[:, None]) <= radius * SCALE).astype(np.uint8)
 
 
 def _blurred(picture: Any) -> Floats:

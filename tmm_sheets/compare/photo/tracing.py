@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import cv2
 import numpy as np
@@ -28,7 +28,7 @@ from tmm_sheets.compare.photo.displacement import beside, better_match, displace
 from tmm_sheets.compare.photo.line_ends import ignore_junction_ends, resolve_overlaps, with_edges, with_ends
 from tmm_sheets.compare.photo.lost_ink import Mask, at, in_pieces, share_hidden, torn_widths, widened
 from tmm_sheets.compare.photo.own_place import Strip, in_place, narrow_divergence, strips, uncovered
-from tmm_sheets.compare.photo.profiles import ink_levels, pixels, sample
+from tmm_sheets.compare.photo.profiles import NO_GREY, SCALE, ink_levels, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.small_marks import WRITTEN, displaced_dots
 from tmm_sheets.compare.photo.traces import (
@@ -44,6 +44,7 @@ from tmm_sheets.compare.photo.traces import (
     Status,
     expected_ink,
     fill,
+    fixed,
     measurable,
     paint,
     painted,
@@ -52,10 +53,11 @@ from tmm_sheets.compare.photo.traces import (
     wipe_found,
     wipe_small,
 )
-from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.marks import Points, Text
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.drawing.text_layout import text_box
 
+BAR = 1.5  # mm about lettering within which its bars are
 OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged
 NEARLY, WASHED_OUT = 0.3, 12
 """Share of what is not seen that lies in hidden places or at their edge from which on it is hidden; mm about them where letters are
@@ -67,6 +69,9 @@ OPEN = 0.3  # least share of a place that is free of lines for it to be told whe
 COVERED, FAINT, BARE = 0.65, 0.3, 0.6
 """Share of a line that others cover or run along from which on what was taken for it may be theirs: where it is alone, darkness as
 a share of the usual up to which it is not seen, and share of such places from which on it was theirs."""
+PALER, TO_DOT, AT_DOT = 0.5, 2.5, 0.8
+"""The same darkness in the half of a line next to a dot at which it ends, least mm of that where it is alone, and mm from its end
+to the middle of the dot: other helper lines end anywhere, this one must be seen to its point, if lines are grey at all."""
 
 
 def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> tuple[list[InkTrace], list[ExtraInk]]:
@@ -94,7 +99,8 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     out_of_sight = {e.number: InkTrace(e, "hidden") for e in elements if share_hidden(e, hidden) > OUT_OF_SIGHT}
     shown = [e for e in elements if e.number not in out_of_sight]
     small = [e for e in shown if not measurable(e)]
-    found, absent, alone = _in_their_places([e for e in shown if measurable(e)], ink, owners, pale, hidden)
+    dots = np.array([e.centre for e in small if e.kind == "circle" and e.fills], complex)
+    found, absent, alone = _in_their_places([e for e in shown if measurable(e)], dots, ink, owners, pale, hidden)
     wiped = np.zeros_like(ink)
     for e in small:
         wipe_small(wiped, e)
@@ -145,36 +151,51 @@ def _shown_ends(t: InkTrace, hidden: Mask) -> tuple[float, float]:
     return begin, end
 
 
+class _Alone(NamedTuple):
+    """How dark the place of a line is where no other covers it, and the share of the usual up to which it is not seen there."""
+
+    dark: Floats
+    faint: float
+
+
 def _in_their_places(
-    lines: Sequence[Element], ink: Any, owners: Owners, level: float, hidden: Mask,
-) -> tuple[list[InkTrace], list[Element], dict[int, Floats]]:
-    """Traces of the lines that are where they belong, the lines that are not, and how dark it is where lines are alone, by number,
-    if that may show that others' ink was taken for theirs.
+    lines: Sequence[Element], dots: Points, ink: Any, owners: Owners, level: float, hidden: Mask,
+) -> tuple[list[InkTrace], list[Element], dict[int, _Alone]]:
+    """Traces of the lines that are where they belong, the lines that are not, and the places of the former where they are alone, by
+    number, if those may show that others' ink was taken for theirs; ``dots`` are middles.
     """
     found: list[InkTrace] = []
     absent: list[Element] = []
-    alone: dict[int, Floats] = {}
+    alone: dict[int, _Alone] = {}
     for strip in strips(lines, ink, owners, hidden):
         t = in_place(strip, level)
         if t is None:
             absent.append(strip.element)
         else:
             found.append(t)
-        places = alone_on(strip, t is not None)
+        places = alone_on(strip, dots, t is not None)
         if places is not None and expected_ink(strip.element) == 1.0:
             alone[strip.element.number] = places
     return found, absent, alone
 
 
-def alone_on(strip: Strip, found: bool = True) -> Floats | None:
-    """How dark the place of a line is where no other covers it or runs along; None where others do so for the lesser part, unless
-    it was not found.
+def alone_on(strip: Strip, dots: Points, found: bool = True) -> _Alone | None:
+    """The places of a line that others cover or run along for the most part, or that was not found, where none does; before a dot
+    where it ends, a few.
     """
-    dark = uncovered(strip)
-    shows = ~np.isnan(dark)
+    e, dark = strip.element, uncovered(strip)
+    step, shows = e.length / len(dark), ~np.isnan(dark)
     share = float(shows.mean())
-    covered = share <= 1 - COVERED or (not found and strip.element.kind == "line")
-    return dark[shows] if covered and share * strip.element.length >= LEAST else None
+    if (share <= 1 - COVERED or (not found and e.kind == "line")) and share * e.length >= LEAST:
+        return _Alone(dark[shows], FAINT)
+    if e.kind != "line" or share > COVERED:
+        return None
+    half = len(dark) // 2
+    for end, part in ((e.points[0], slice(half)), (e.points[-1], slice(-half, None))):
+        before = dark[part][shows[part]]
+        if len(before) * step >= TO_DOT and (np.abs(dots - end) <= AT_DOT).any():
+            return _Alone(before, PALER)
+    return None
 
 
 def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owners: Owners, level: float) -> list[InkTrace]:
@@ -203,7 +224,7 @@ def _edge(t: InkTrace) -> bool:
 
 
 def doubted(
-    found: Sequence[InkTrace], alone: Mapping[int, Floats], ink: Any, left: Any, wiped: Any, owners: Owners, level: float,
+    found: Sequence[InkTrace], alone: Mapping[int, _Alone], ink: Any, left: Any, wiped: Any, owners: Owners, level: float,
 ) -> list[InkTrace]:
     """The traces; those of lines paler than others of their kind, with gaps, or not seen where they are ``alone``, are looked for
     elsewhere once more.
@@ -213,8 +234,9 @@ def doubted(
     for t in found:
         dark = usual.get(line_type(t.element.style).width, 0.0)
         places = alone.get(t.element.number)
-        covered = (places is not None and t.status != "missing" and t.deviation <= ELSEWHERE
-                   and bool((places <= FAINT * dark).mean() >= BARE))
+        tells = places is not None and (places.faint <= FAINT or dark < NO_GREY)
+        tells &= t.status != "missing" and t.deviation <= ELSEWHERE
+        covered = tells and places is not None and bool((places.dark <= places.faint * dark).mean() >= BARE)
         covered |= t.element.kind == "line" and 0 < t.darkness <= FAINT * dark  # ends of a hatching in its place
         if covered:
             t = replace(t, status="covered", covered=0.0, darkness=0.0)
@@ -270,12 +292,26 @@ def _dots(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, words: 
     painted(taken, [(e, e.points) for e in dots], ABOUT_INK / 2)  # paint widens lines, and grows what is filled to all sides
     straight = [t for t in found if t.element.kind == "line"]
     rods, astray = [t.element.points for t in straight], [t.element.points for t in straight if _is_displaced(t)]
-    return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()), astray)
+    return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()), astray, bars(small, ink))
 
 
 def _is_displaced(t: InkTrace) -> bool:
     """Whether a line is not in its place."""
     return t.status in ("missing", "covered", "beside") or (t.status == "measured" and t.deviation > ELSEWHERE)
+
+
+def bars(small: Sequence[Element], ink: Any) -> Any:
+    """A picture of the bars over letters, which lie near them all along as their leaders do not, 255 there."""
+    out = np.zeros_like(ink)
+    for e in small:
+        if e.kind != "text" or not e.pieces:
+            continue
+        box = grown(e.points, BAR)
+        for p in e.pieces:
+            inside = (p.real > box.real.min()) & (p.real < box.real.max()) & (p.imag > box.imag.min()) & (p.imag < box.imag.max())
+            if inside.all():
+                cv2.polylines(out, [fixed(p)], False, 255, round(2 * ABOUT_INK * SCALE), cv2.LINE_8, 4)
+    return out
 
 
 def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
