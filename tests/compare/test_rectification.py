@@ -16,9 +16,9 @@ from tmm_sheets.compare.photo import fit_check, frame_search, map_fit, profiles,
 from tmm_sheets.compare.photo.fit_check import FitCheck
 from tmm_sheets.compare.photo.frame_candidates import FrameGuess, follow_sides, inked, side_moved_to_ink
 from tmm_sheets.compare.photo.frame_search import FoundFrame, FrameFit, initial_map, sides_near
-from tmm_sheets.compare.photo.map_fit import FOCUS, Seen, camera_foot, fit_map, lens_and_homography
+from tmm_sheets.compare.photo.map_fit import FOCUS, Seen, camera_foot, camera_height, fit_map, fit_waves, lens_and_homography
 from tmm_sheets.compare.photo.paper_distortion import fit_surface
-from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, PAPER, RELIEF, Map, heights, homography
+from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, PAPER, RELIEF, Map, drawn_in, heights, homography, spline
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
@@ -112,6 +112,24 @@ def test_waves_are_followed_from_a_frame_alone_and_by_no_single_line(tall):
     assert np.abs(true.to_sheet(place(GRID)) - wrong.to_sheet(place(GRID))).max() < 0.3
 
 
+@pytest.mark.parametrize(("across", "along"), [(0.0, 0.0), (8.0, 0.0), (0.0, -8.0), (6.0, 6.0)])
+def test_waved_paper_keeps_its_length(across, along):
+    """Its places are drawn in by what the way up and down is longer, wherever the height is counted from."""
+    def slope(t):
+        return np.cos(t / 60) / 60
+
+    t = np.linspace(0, 1, 400)
+    x, y = FRAME.x0 + FRAME.width * t, FRAME.y0 + FRAME.height * t
+    node = [np.linspace(-1, n + 1, n + 3) / n for n in (14, 20)]  # a spline's coefficients are nearly what it is there
+    surface = 50 + across * np.sin(FRAME.width * node[1] / 60)[None, :] + along * np.sin(FRAME.height * node[0] / 60)[:, None]
+    aside = drawn_in(surface / 1.25, 1.25)
+    for one, p, size, height in ((aside[0], x + 300j, FRAME.width, across), (aside[1], 400 + 1j * y, FRAME.height, along)):
+        lost = np.cumsum((0.93 * height * slope(size * t)) ** 2 / 2) * size * (t[1] - t[0])
+        found = spline(p, one)
+        assert np.abs(found - found[0] + lost).max() < 0.1 + 0.1 * lost[-1]
+        assert found.std() <= 1e-9 or height
+
+
 @pytest.mark.parametrize("off", [0.0, 2.5, -2.5])
 def test_the_edge_of_the_paper_is_no_side_of_its_frame(off):
     scale, ground = 3.0, 20.0
@@ -139,6 +157,7 @@ def test_the_foot_of_the_camera_is_told_by_the_perspective():
     foot, error = camera_foot(m)
     assert abs(foot - (500 + 200j)) < 1e-6
     assert error < 100
+    assert abs(camera_height(m) - 1000) < 1e-6
 
 
 @pytest.mark.parametrize(("turn", "margin", "anywhere"), [(0.0, 0.0, True), (1.5, 0.0, False), (0.0, 30.0, False)])
@@ -268,6 +287,24 @@ def test_corner_on_the_papers_edge_is_put_back(quarters):
     found = frame_search.find(grey, rectification.frame_lines(elements(sheet)))
     assert found.turned == quarters
     assert np.abs(found.corners - true).max() < scale
+
+
+def test_waves_take_up_what_is_left_but_no_single_line():
+    place, (columns, rows) = projection(Camera(curl=6.0, fold=1.2, waves=(1.0, -0.4, 0.1), tilt=0.25, azimuth=4.0), 841.0, 594.0)
+    frame, seen = sides(place), lines(place, np.random.default_rng(3), 400)
+    m = initial_map(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
+    for degree in (2, 4, 6):
+        m = fit_map(m, frame, seen, degree, 0.5)[0]
+    before = np.abs(m.to_sheet(place(GRID)) - GRID)
+    finer = fit_waves(m, seen, 0.2)
+    after = np.abs(finer.to_sheet(place(GRID)) - GRID)
+    assert np.median(after) < 0.7 * np.median(before)
+    off = seen.sheet.copy()
+    off[:20] += 0.5 * seen.normals[:20]
+    wrong = fit_waves(m, seen._replace(sheet=off), 0.2)
+    assert np.abs(finer.correction(GRID) - wrong.correction(GRID)).max() < 0.05
+    edge = np.array([20 + 300j, 836 + 100j])
+    assert finer.waved(edge).real == pytest.approx(0, abs=1e-12)
 
 
 def test_circles_are_not_taken_for_their_neighbours():

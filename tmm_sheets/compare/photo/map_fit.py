@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import cv2
 import numpy as np
 
-from tmm_sheets.compare.photo.profiles import ProfileLines, pixels
-from tmm_sheets.compare.photo.sheet_map import AWAY, CORNERS, DEGREE, FRAME, PAPER, Floats, Map, heights, projected
+from tmm_sheets.compare.photo.profiles import ProfileLines, fit, pixels
+from tmm_sheets.compare.photo.sheet_map import AWAY, CORNERS, DEGREE, FRAME, PAPER, WAVES, Floats, Map, heights, projected, waves
 from tmm_sheets.drawing.marks import Points
 
 USUAL = 0.015
@@ -41,6 +41,8 @@ TAME = 0.02
 """Weight of the prior for an unbent side where its points are hidden, relative to that of all points."""
 UNSEEN = 0.3
 """How much a hidden point counts, as one where the side is not bent beside what the lines inside tell, relative to a seen one."""
+RIDGE = 0.01
+"""Damping of a wave over the whole sheet, relative to its effect on all points."""
 
 
 class Seen(NamedTuple):
@@ -105,6 +107,18 @@ def fit_side(t: Floats, r: Floats, use: Any, degree: int) -> tuple[Floats, float
         sigma = max(1.4826 * float(np.median(np.abs(d[use]))), 0.03)
         w = use / (1 + (d / (2 * sigma)) ** 2)
     return np.asarray(c), sigma
+
+
+def fit_waves(m: Map, seen: Seen, loose: float) -> Map:
+    """A map whose waves follow the residual of lines inside the frame; the shorter a wave, the more it is damped."""
+    x, y = waves(seen.sheet)
+    base = np.concatenate((x * seen.normals.real[:, None], y * seen.normals.imag[:, None]), 1)
+    plain = replace(m, waves=np.zeros_like(m.waves))
+    r = np.real(np.conj(seen.normals) * (m.to_base(seen.picture) - seen.sheet - plain.correction(seen.sheet)))
+    i, j = np.indices((WAVES, WAVES)) + 1
+    rank = np.tile(np.maximum(i, j).ravel(), 2)
+    ridge = (seen.weight > 0).sum() * (RIDGE * rank**1.5) ** 2
+    return replace(m, waves=fit(base, r, seen.weight**2, loose, ridge))
 
 
 def _fit_base(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
@@ -191,9 +205,20 @@ def camera_foot(m: Map) -> tuple[complex, float]:
     aside = abs(complex(m.to_base(np.array([m.middle]))[0]) - PAPER.centre)
     if np.abs((sides + 45) % 90 - 45).max() < PARALLEL and aside < CENTRAL:
         return PAPER.centre, ANYWHERE
-    g = np.linalg.inv(m.matrix) / np.array([[FOCUS], [FOCUS], [1.0]])
-    first, second, away = (g / np.linalg.norm(g[:, 0])).T  # the sheet's axes, and its origin, mm, as the camera has them
+    first, second, away = _camera(m)
     return complex(-first @ away, -second @ away), FOOT
+
+
+def camera_height(m: Map) -> float:
+    """How far above the sheet the camera was by the size of the picture, mm."""
+    first, second, away = _camera(m)
+    return float(abs(np.cross(first, second) @ away))
+
+
+def _camera(m: Map) -> Floats:
+    """The directions of the sheet's axes, and its origin, mm, as the camera has them."""
+    g = np.linalg.inv(m.matrix) / np.array([[FOCUS], [FOCUS], [1.0]])
+    return np.asarray((g / np.linalg.norm(g[:, 0])).T)
 
 
 SIZE, APART = 90.0, 45.0

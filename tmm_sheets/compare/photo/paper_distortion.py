@@ -1,7 +1,7 @@
 """Paper that is not smooth: waves, creases, what lies beneath it.
 
-Its height is a cubic B-spline over the sheet, with a prior against bending, so that single lines do not lift it; by what it is
-shorter where it is steep, for paper keeps its length, a coarser spline takes up in the plane.
+Its height is a cubic B-spline over the sheet, with a prior against bending, so that single lines do not lift it; where it is
+steep, it also is shorter by as much as paper is that keeps its length, and what that leaves a coarser spline takes up in the plane.
 Everything is fitted together with the homography, the lens and the camera's foot.
 """
 
@@ -17,9 +17,9 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown, sampled
 from tmm_sheets.compare.photo.lost_ink import Mask, at
-from tmm_sheets.compare.photo.map_fit import LENS, Seen, camera_foot, lens_and_homography
+from tmm_sheets.compare.photo.map_fit import LENS, Seen, camera_foot, camera_height, lens_and_homography
 from tmm_sheets.compare.photo.profiles import fit, follow, ink_levels, peaks, pixels, runs, sample
-from tmm_sheets.compare.photo.sheet_map import AWAY, FRAME, PAPER, Floats, Map, spline_base, spline_nodes
+from tmm_sheets.compare.photo.sheet_map import AWAY, FRAME, PAPER, Floats, Map, drawn_in, spline_base, spline_nodes
 from tmm_sheets.compare.photo.traces import SAMPLING, Owners, Stations, fill, measurable, similarity_base
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell
@@ -55,9 +55,10 @@ def fit_surface(m: Map, sides: Seen, loose: float, seen: Seen, far: float) -> Ma
     seen = Seen(*(np.concatenate(pair) for pair in zip(sides, seen, strict=True)))
     shape, flat = (CELLS[1] + 3, CELLS[0] + 3), (STRETCHED[1] + 3, STRETCHED[0] + 3)
     foot, error = camera_foot(m)
+    away = camera_height(m)
     if not m.surface.any():
-        m = replace(m, surface=np.zeros(shape), stretch=np.zeros((2, *flat)), foot=foot)
-    m = replace(m, sides=np.zeros_like(m.sides), relief=np.zeros_like(m.relief))
+        m = replace(m, surface=np.zeros(shape), stretch=np.zeros((2, *flat)), drawn_in=np.zeros((2, *shape)), foot=foot)
+    m = replace(m, sides=np.zeros_like(m.sides), relief=np.zeros_like(m.relief), waves=np.zeros_like(m.waves))
     p, n, q = seen.sheet, np.conj(seen.normals), (seen.picture - m.middle) / m.reach
     here_of, height = spline_nodes(p, shape)
     plane_of, plane = spline_nodes(p, flat)
@@ -78,13 +79,23 @@ def fit_surface(m: Map, sides: Seen, loose: float, seen: Seen, far: float) -> Ma
         mine = slice(12 + count + k * few, 12 + count + (k + 1) * few)
         prior[mine, mine] += uneven.T @ uneven
 
-    x = np.concatenate(((m.matrix / m.matrix[2, 2]).ravel()[:8], m.bend, (m.foot.real, m.foot.imag), m.surface.ravel(),
-                        m.stretch.ravel()))
+    def packed(m: Map) -> Floats:
+        return np.concatenate(((m.matrix / m.matrix[2, 2]).ravel()[:8], m.bend, (m.foot.real, m.foot.imag), m.surface.ravel(),
+                               m.stretch.ravel()))
+
+    def unpacked(x: Floats) -> Map:
+        risen = x[12 : 12 + count].reshape(shape)
+        return replace(m, matrix=np.append(x[:8], 1.0).reshape(3, 3), bend=(float(x[8]), float(x[9])), foot=complex(x[10], x[11]),
+                       surface=risen, stretch=x[12 + count :].reshape(2, *flat), drawn_in=drawn_in(risen, away / AWAY))
+
+    x = packed(m)
     lever_less = np.hstack((-n.real[:, None] * plane, n.imag[:, None] * plane))
     for _ in range(STEPS):
         (here, slopes), lift = lens_and_homography(x[:10], q, n), (height * x[12 + here_of]).sum(1)
         lever = np.real(n * (p - complex(x[10], x[11]))) / AWAY
-        r = here - np.real(n * p) - lift * lever + (lever_less * x[which[:, 28:]]).sum(1)
+        aside = drawn_in(x[12 : 12 + count].reshape(shape), away / AWAY).reshape(2, -1)
+        shorter = [(height * part[here_of]).sum(1) for part in aside]
+        r = here - np.real(n * (p + shorter[0] + 1j * shorter[1])) - lift * lever + (lever_less * x[which[:, 28:]]).sum(1)
         jacobian = np.hstack((
             slopes,
             np.stack((n.real * lift, -n.imag * lift), -1) / AWAY,
@@ -104,8 +115,7 @@ def fit_surface(m: Map, sides: Seen, loose: float, seen: Seen, far: float) -> Ma
         x = x + change
         if float(np.abs((jacobian * change[which]).sum(1)).max()) < SETTLED:
             break
-    return replace(m, matrix=np.append(x[:8], 1.0).reshape(3, 3), bend=(float(x[8]), float(x[9])), foot=complex(x[10], x[11]),
-                   surface=x[12 : 12 + count].reshape(shape), stretch=x[12 + count :].reshape(2, *flat))
+    return unpacked(x)
 
 
 def _bending(shape: tuple[int, int]) -> Any:

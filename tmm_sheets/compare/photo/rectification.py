@@ -2,7 +2,7 @@
 
 The frame is found, its sides give a first map of the sheet (``frame_search``), and the lines of the drawing and of the title block
 correct it (``map_fit``): homography, lens and the height of the paper, a polynomial of degree
-:data:`~tmm_sheets.compare.photo.sheet_map.RELIEF`, are fitted together.
+:data:`~tmm_sheets.compare.photo.sheet_map.RELIEF`, are fitted together; finally a few waves take up some tenths of a millimetre.
 Paper that is not smooth has a ``surface`` instead.
 None of these can follow a single view, least of all a single line: among several hundred lines that determine some seventy
 parameters a wrong one moves them by hundredths of a millimetre (Geman-McClure weights all but ignore it).
@@ -25,7 +25,7 @@ from tmm_sheets.compare.photo import fit_check, frame_search, map_fit
 from tmm_sheets.compare.photo.fit_check import MATCH, FitCheck
 from tmm_sheets.compare.photo.frame_search import FoundFrame
 from tmm_sheets.compare.photo.lost_ink import LostToThreshold, Mask, hidden_places
-from tmm_sheets.compare.photo.map_fit import SIDE, Seen, fit_map
+from tmm_sheets.compare.photo.map_fit import SIDE, Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.paper_distortion import about, bulge_notes, fit_surface, over_bulges
 from tmm_sheets.compare.photo.photograph import Photograph
 from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, inked, line_level, noise_level
@@ -50,8 +50,8 @@ TURNED = {
 }
 """What was done to a picture by quarter turns it was seen turned by."""
 COARSE = 4.0  # pixels per mm, enough for the correction
-COARSE_TO_FINE = ((3.5, 2, 3.0), (2.0, 4, 1.0), (1.2, RELIEF, 0.4), (0.8, RELIEF, 0.2))
-"""Reach to either side of a line, mm; degree of the relief; distance that counts as far off, mm."""
+COARSE_TO_FINE = ((3.5, 2, 3.0), (2.0, 4, 1.0), (1.2, RELIEF, 0.4), (0.8, RELIEF, 0.2), (0.7, RELIEF + 1, 0.2))
+"""Reach to either side of a line, mm; degree of the relief (above the highest: waves); distance that counts as far off, mm."""
 PATCHED = (2, 4, RELIEF)
 """Degrees of the relief by which a map follows patches of the sheet, one after the other."""
 LEAST_PATCHES, OFF, PATCH = 6, 1.5, 1.0
@@ -71,6 +71,8 @@ WHOLE = 0.98
 """Share of a side's points in place below which the side is followed once more, near where the lines inside have it."""
 ABOUT = 1.5
 """How near that is, mm."""
+FAR = 3.0
+"""The same where a surface may be in part, mm; the edge of the paper is 5 mm from the frame."""
 NO_SIDES = Seen(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, complex), np.zeros(0))
 CURVED = 0.8
 """Least share of lines in place from which on a surface is believed that only a frame led to."""
@@ -328,20 +330,25 @@ class Attempts:
         if right:
             sides = frame_search.sides_near(self.grey, m, ABOUT)
         weight = weights(self.lines)
-        for size, far in ROUGHLY:
-            seen = map_fit.patches(m, straight, ink, self.lines, COARSE, size)
-            count = len(seen.weight) // 2
-            # As much as a fifth of the frame's points, as in _by_patches; each patch as much as some points of lines.
-            own = sides._replace(weight=sides.weight * np.sqrt(0.4 * count / max(float(sides.weight.sum()), 1.0)))
-            m = fit_surface(m, own, SIDE, seen._replace(weight=2 * seen.weight), far)
-        for reach, far in FINER:
-            sides = frame_search.sides_near(self.grey, m, max(reach, ABOUT))
-            own = sides._replace(weight=0.5 * sides.weight)
-            at = straight.to_sheet(m.to_picture(self.lines.points))
-            o, use, _ = inked(ink, self.lines, reach, level, at - self.lines.points, COARSE)
-            seen = Seen(straight.to_picture(at + self.lines.normals * o), self.lines.points, self.lines.normals, weight * use)
-            m = fit_surface(m, own, max(2 * far, 0.5), seen, far)
-        check = fit_check.check(m, straight, sides, ink, self.lines, level, COARSE)
+        for steps in (ROUGHLY, ROUGHLY[-1:]):
+            for size, far in steps:
+                seen = map_fit.patches(m, straight, ink, self.lines, COARSE, size)
+                count = len(seen.weight) // 2
+                # As much as a fifth of the frame's points, as in _by_patches; each patch as much as some points of lines.
+                own = sides._replace(weight=sides.weight * np.sqrt(0.4 * count / max(float(sides.weight.sum()), 1.0)))
+                m = fit_surface(m, own, SIDE, seen._replace(weight=2 * seen.weight), far)
+            for reach, far in FINER:
+                sides = frame_search.sides_near(self.grey, m, max(reach, ABOUT))
+                own = sides._replace(weight=0.5 * sides.weight)
+                at = straight.to_sheet(m.to_picture(self.lines.points))
+                o, use, _ = inked(ink, self.lines, reach, level, at - self.lines.points, COARSE)
+                seen = Seen(straight.to_picture(at + self.lines.normals * o), self.lines.points, self.lines.normals, weight * use)
+                m = fit_surface(m, own, max(2 * far, 0.5), seen, far)
+            check = fit_check.check(m, straight, sides, ink, self.lines, level, COARSE)
+            if check.match < MATCH or (not len(check.astray) and float(check.sides.min()) > WHOLE):
+                break
+            # Where a corner was farther off than lines are sought, its patches know by now where it is.
+            sides = frame_search.sides_near(self.grey, m, FAR)
         return attempt._replace(frame=attempt.frame._replace(sides=sides), map=m, check=check)
 
     def _by_patches(self, straight: Map, sides: Seen, ink: Any) -> Map:
@@ -429,7 +436,7 @@ def refine(
     level
         Darkness of a line.
     highest
-        Highest degree of the relief.
+        Degree of the relief; waves follow only with the full :data:`RELIEF`.
     steps
         See :data:`COARSE_TO_FINE`.
     start
@@ -449,7 +456,8 @@ def refine(
             return better, scatter, hit
         scatter = 1.4826 * float(np.median(np.abs(o[use])))
         seen = Seen(m.to_picture(at + lines.normals * o), lines.points, lines.normals, weight * use)
-        better = fit_map(better, sides, seen, min(degree, highest), loose)[0]
+        fine = RELIEF <= highest < degree
+        better = fit_waves(better, seen, loose) if fine else fit_map(better, sides, seen, min(degree, highest), loose)[0]
     return better, scatter, hit
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,7 @@ SIDE_TERMS = 7  # coefficients of the polynomial a side is bent by
 RELIEF = 6  # degree of the polynomial for the height of the paper
 TERMS = tuple((i, n - i) for n in range(2, RELIEF + 1) for i in range(n, -1, -1))
 DEGREE = np.array([i + j for i, j in TERMS])
+WAVES = 4  # half waves over the sheet, in each direction, for the residual
 AWAY = 1000.0  # mm from the paper to the camera, nominal: an error in it only rescales the heights
 
 
@@ -42,8 +44,10 @@ class Map:
         interpolated between opposite sides (a Coons patch)
     relief : coefficients of the height of the paper, mm (see :func:`heights`)
     foot : the point of the sheet below the camera
-    surface : B-spline of the height of paper that is not smooth, mm, instead of relief and sides (see ``surface``)
+    waves : coefficients of the residual inside the frame, mm (see :func:`waves`)
+    surface : B-spline of the height of paper that is not smooth, mm, instead of relief, sides and waves (see ``surface``)
     stretch : B-splines of what such paper is displaced by in x and in y, mm
+    drawn_in : the same of what it is drawn in by, for it keeps its length where it rises and falls (see ``drawn_in``)
     local : finer B-splines of what is displaced where the paper bulges (see ``paper_distortion``), mm
     """
 
@@ -54,8 +58,10 @@ class Map:
     sides: Floats = field(default_factory=lambda: np.zeros((4, SIDE_TERMS)))
     relief: Floats = field(default_factory=lambda: np.zeros(len(DEGREE)))
     foot: complex = FRAME.centre
+    waves: Floats = field(default_factory=lambda: np.zeros(2 * WAVES**2))
     surface: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     stretch: Floats = field(default_factory=lambda: np.zeros((2, 0, 0)))
+    drawn_in: Floats = field(default_factory=lambda: np.zeros((2, 0, 0)))
     local: Floats = field(default_factory=lambda: np.zeros((2, 0, 0)))
 
     def to_base(self, q: Points) -> Points:
@@ -83,18 +89,29 @@ class Map:
         return p
 
     def correction(self, p: Points) -> Points:
-        """Offset of points of the sheet from where :meth:`to_base` has them, mm: bent sides and relief, or surface."""
-        by = spline(p, self.local[0]) + 1j * spline(p, self.local[1]) if self.local.size else 0j
+        """Offset of points of the sheet from where :meth:`to_base` has them, mm: bent sides, relief and waves, or surface."""
+        smooth = self._smooth(p)
+        return smooth + spline(p, self.local[0]) + 1j * spline(p, self.local[1]) if self.local.size else smooth
+
+    def _smooth(self, p: Points) -> Points:
         if self.surface.size:
-            risen = spline(p, self.surface) * (p - self.foot) / AWAY
-            return np.asarray(by + spline(p, self.stretch[0]) + 1j * spline(p, self.stretch[1]) + risen)
+            along, up = (spline(p, one) + spline(p, other) for one, other in zip(self.stretch, self.drawn_in, strict=True))
+            return np.asarray(along + 1j * up + spline(p, self.surface) * (p - self.foot) / AWAY)
         u, v = (p.real - FRAME.x0) / FRAME.width, (p.imag - FRAME.y0) / FRAME.height
         bottom, right, top, left = (
             np.polynomial.chebyshev.chebval(2 * np.clip(t, 0, 1) - 1, c)
             for t, c in zip((u, v, u, v), self.sides, strict=True)
         )
         dx, dy = (1 - u) * left + u * right, (1 - v) * bottom + v * top
-        return np.asarray(by + dx + 1j * dy) + self.risen(p)
+        return np.asarray(dx + 1j * dy) + self.risen(p) + self.waved(p)
+
+    def waved(self, p: Points) -> Points:
+        """Contribution of the waves to :meth:`correction`, mm."""
+        if not self.waves.any():
+            return np.zeros(np.shape(p), np.complex128)
+        x, y = waves(p)
+        half = len(self.waves) // 2
+        return np.asarray(np.einsum("...k,k->...", x, self.waves[:half]) + 1j * np.einsum("...k,k->...", y, self.waves[half:]))
 
     def risen(self, p: Points) -> Points:
         """Contribution of the relief: a point at height h appears farther from the foot by h / :data:`AWAY` of its distance."""
@@ -108,6 +125,16 @@ def heights(p: Points, degree: int = RELIEF) -> Floats:
     x, y = (np.polynomial.chebyshev.chebvander(2 * t - 1, degree) for t in (u, v))
     i, j = np.array(TERMS)[degree >= DEGREE].T
     return np.asarray(x[..., i] * y[..., j])
+
+
+def waves(p: Points) -> tuple[Floats, Floats]:
+    """Terms of the residual in x and in y at points of the sheet, (..., n): 0 across the sides of the frame."""
+    u = pi * np.clip((np.real(p) - FRAME.x0) / FRAME.width, 0, 1)
+    v = pi * np.clip((np.imag(p) - FRAME.y0) / FRAME.height, 0, 1)
+    k = range(WAVES)
+    sines, cosines = ([np.stack([f((i + one) * t) for i in k], -1) for t in (u, v)] for f, one in ((np.sin, 1), (np.cos, 0)))
+    x, y = sines[0][..., :, None] * cosines[1][..., None, :], cosines[0][..., :, None] * sines[1][..., None, :]
+    return x.reshape(*np.shape(p), -1), y.reshape(*np.shape(p), -1)
 
 
 def _cubic(t: Floats, cells: int) -> tuple[Any, Floats]:
@@ -140,6 +167,30 @@ def spline_base(p: Points, shape: tuple[int, int]) -> Floats:
     base = np.zeros((len(p), shape[0] * shape[1]))
     np.put_along_axis(base, which, weight, 1)
     return base
+
+
+def drawn_in(surface: Floats, scale: float) -> Floats:
+    """By how much paper that rises and falls is shorter seen from above, mm: the coefficients of such splines for x and for y.
+
+    Paper keeps its length along every line; ``scale`` is that of the heights.
+    """
+    step = 8.0
+    bases = []
+    for size, cells in ((FRAME.height, surface.shape[0] - 3), (FRAME.width, surface.shape[1] - 3)):
+        t = np.linspace(0, 1, round(size / step) + 1)
+        first, weight = _cubic(t, cells)
+        base = np.zeros((len(t), cells + 3))
+        np.put_along_axis(base, first[:, None] + np.arange(4), weight, 1)
+        bases.append(base)
+    up, along = bases
+    height = scale * up @ surface @ along.T
+    out = []
+    for axis, size in ((1, FRAME.width), (0, FRAME.height)):
+        apart = size / (height.shape[axis] - 1)
+        lost = np.gradient(height, apart, axis=axis) ** 2 / 2 * apart
+        aside = np.cumsum(lost, axis) - lost / 2
+        out.append(np.linalg.pinv(up) @ (aside.mean(axis, keepdims=True) - aside) @ np.linalg.pinv(along).T)
+    return np.stack(out)
 
 
 def projected(matrix: Floats, p: Points) -> Points:
