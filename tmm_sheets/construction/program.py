@@ -155,7 +155,7 @@ def program(wanted: Mapping[str, Step], rows: Sequence[Any], chosen: Sequence[st
                           tell("choose one that the record names, such as crank.length"))
     results = {name: walk.parts(step) for name, step in wanted.items()}
     return _only_needed(Program(tuple(walk.list.values), tuple(rows), {name: walk.used[name] for name in chosen}, results,
-                                 tuple(walk.guards)))
+                                tuple(walk.guards)))
 
 
 def _only_needed(p: Program) -> Program:

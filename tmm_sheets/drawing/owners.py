@@ -324,7 +324,7 @@ def _subject(ink: InkIndex, label: Label) -> _Subject:
 
 
 def _own_segments(ink: InkIndex, labels: Sequence[Label], subjects: Sequence[_Subject], which: Numbers, a: Points, b: Points,
-                of: Numbers) -> tuple[Flags, Flags]:
+                  of: Numbers) -> tuple[Flags, Flags]:
     """Which segments, near the labels numbered ``which``, these may stand for; and which of them are other vectors on their line.
 
     A label stands for the step it names and for what meets or lies about its anchor; but the letter of a vector or a curve stands

@@ -79,7 +79,7 @@ def read(path: Path, task: str = "") -> list[Enrolled]:
             key = files.alike(one.folder), files.alike(one.group)
             if key in lines:
                 raise _bad_column("student", tell("{name} stands in line {line} already").format(name=one.student, line=lines[key]),
-                             tell("tell them apart by initials"))
+                                  tell("tell them apart by initials"))
             lines[key] = line
             found.append(one)
         except BadInput as e:
@@ -171,10 +171,10 @@ def _project(told: Mapping[str, str], beside: Path, common: str) -> str:
         called = machine if sign else re.split("[:@]", task)[0]
         if not called and own.isdecimal():
             raise _bad_column("variant", tell("expected a task beside the variant, such as 3"),
-                         tell("or one task for all: --task PROJECT"))
+                              tell("or one task for all: --task PROJECT"))
         if not called:
             raise _bad_column(column, tell("expected a machine beside the cipher: diesel, press, compressor or crusher"),
-                         tell("in a column task, or for all --task transport/diesel"))
+                              tell("in a column task, or for all --task transport/diesel"))
         machine = _machine(called, varied=True)
         family = families.of(machine)
         if family is None:

@@ -186,7 +186,7 @@ def _search_strip(e: Element, s: Stations) -> tuple[Floats, Any]:
 
 
 def _best_displaced(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Floats, level: float,
-               least: float = KNOWN) -> InkTrace | None:
+                    least: float = KNOWN) -> InkTrace | None:
     """The element where the ink that is left fits it best, None when nothing fits; ``least`` of it, a share, must be seen."""
     expected, reach = expected_ink(e), float(offsets[-1])
     hit = _hit(profile, level)

@@ -212,7 +212,7 @@ class _Task:
             return [v[:0] for v in z]
         total = abs(stage_ratio(inner_ratio(s, z), self.driver)) ** self.stages
         z = self._filtered(z, (total * (wheels[-1] / self.pinion) >= self.ratio * (1 - reach))
-                       & (total * (wheels[0] / self.pinion) <= self.ratio * (1 + reach)))
+                           & (total * (wheels[0] / self.pinion) <= self.ratio * (1 + reach)))
         z = self._filtered(z, assembles(s, z, d.satellites))
         return self.free_of_interference(z) if d.strict_internal else z
 

@@ -453,7 +453,7 @@ def _force_graph(project: Project, s: PlayerStage, box: Box, below: bool) -> Non
 
 
 def _force_over_path(project: Project, s: PlayerStage, strokes: Strokes, along: Any, diagram: tuple[Any, Any], y0: float,
-              mu: float) -> tuple[Any, Any]:
+                     mu: float) -> tuple[Any, Any]:
     """A diagram of a force over the path, from the axis and back to it, mm, and the angles where it acts, rad."""
     turned, values = diagram
     acting = np.flatnonzero(values)
