@@ -80,6 +80,20 @@ def test_the_terminal_the_json_and_the_page_count_alike():
     assert json.loads(report.as_json())["summary"] == dict(summary)
 
 
+@pytest.mark.parametrize(("drawing", "rows"), [("own_layout_right.dxf", 0), ("own_layout_wrong_titled.dxf", 1)])
+def test_lines_that_follow_from_a_mistake_are_one_row(drawing, rows):
+    """However many the JSON lists, with the number of each that stands there."""
+    report = case(ROCKER, drawing)
+    told = [line for line in report.text.splitlines() if "as follows from the mistake" in line]
+    led = [f for f in report.tree["findings"] if f["verdict"] == "red" and f.get("follows")]
+    assert len(told) == rows
+    assert bool(led) == bool(rows)
+    for line in told:
+        first, *more = re.findall(r"\d+", line.split("no. ")[1].split("  ")[0])
+        assert {int(first), *map(int, more)} <= {f["number"] for f in led}
+        assert f", {len(led)}: no." in line
+
+
 def changed(tmp_path, drawing, change):
     doc = ezdxf.readfile(CASES / drawing)
     change(doc, doc.modelspace())
