@@ -27,7 +27,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.drawing import ink
 from tmm_sheets.drawing.canvas import MarkGroup
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Provenance, Role, Text, View
+from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Provenance, Role, Text, View, run
 from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.drawing.title_block import who_cells
 from tmm_sheets.errors import BadInput
@@ -45,8 +45,6 @@ Kind = Literal["line", "arc", "circle", "curve", "text", "hatch", "fill"]
 
 STRAIGHT = 0.01
 """Points within this distance of a chord, mm, are on a straight line."""
-SAGITTA = 0.005
-"""Sagitta of the chords by which ``points`` approximates an arc, mm."""
 
 
 @dataclass(frozen=True)
@@ -198,9 +196,14 @@ def interruptions(e: Element) -> tuple[tuple[float, float], ...]:
         return ink[0].gaps if len(ink) == 1 else ()
     # A path there and back on a straight line: its gaps by their places.
     z = np.asarray(ink[0].points)
-    along = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(z)))))
+    along = run(z)
     at = (np.interp(np.array(ink[0].gaps) * along[-1], along, z) - e.points[0]) / (e.points[1] - e.points[0])
     return tuple((float(a), float(b)) for a, b in np.sort(at.real, axis=1))
+
+
+def point_along(z: Points, t: float) -> complex:
+    """The point at a distance along a polyline, mm."""
+    return complex(np.interp(t, run(z), z))
 
 
 def said(markup: str) -> str:
@@ -253,16 +256,7 @@ def _hatch_line(mark: Mark) -> bool:
 
 def _line(mark: Mark) -> Points:
     """Centre line of a mark, outline of a filled one, corners of a text's box."""
-    if isinstance(mark, Line):
-        return np.array([mark.a, mark.b])
-    if isinstance(mark, Arc):
-        step = 2 * np.arccos(max(1 - SAGITTA / mark.radius, 0.0))
-        t = np.linspace(mark.start, mark.end, max(ceil((mark.end - mark.start) / step), 1) + 1)
-        return np.asarray(mark.centre + mark.radius * np.exp(1j * t))
-    if isinstance(mark, Text):
-        return text_box(mark)
-    points = np.asarray(mark.points)
-    return _closed(points) if isinstance(mark, Fill) or mark.closed else points
+    return text_box(mark) if isinstance(mark, Text) else np.asarray(ink.centre_line(mark))
 
 
 def _closed(points: Points) -> Points:

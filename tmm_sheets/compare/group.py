@@ -35,12 +35,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import inf, isfinite
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, get_args
 from unicodedata import normalize
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
 from tmm_sheets import files, toml_file
 from tmm_sheets.compare.elements import grouped
@@ -49,9 +49,10 @@ from tmm_sheets.compare.report_pages import page
 from tmm_sheets.errors import BadInput, Problem, told_of
 from tmm_sheets.numbers import told
 from tmm_sheets.output.build_store import untouched
-from tmm_sheets.task import messages
+from tmm_sheets.task import messages, units
 from tmm_sheets.task.schema import Table
 from tmm_sheets.task.title_entries import FILE as SETTINGS
+from tmm_sheets.task.values import not_negative, si
 from tmm_sheets.words import marked, tell, tell_n
 
 if TYPE_CHECKING:
@@ -62,13 +63,7 @@ KINDS: tuple[FaultKind, ...] = get_args(FaultKind)
 """Kinds of faults a scheme gives costs for."""
 
 
-def _not_below_zero(value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value) or value < 0:
-        raise ValueError(tell("expected a number not below 0"))
-    return float(value)
-
-
-Amount = Annotated[float, BeforeValidator(_not_below_zero)]
+Amount = Annotated[float, si(units.NUMBER), not_negative(marked("expected a number not below 0"))]
 
 
 class GradeTable(Table):
@@ -295,11 +290,10 @@ def _projects(path: Path, works: Mapping[str, object]) -> dict[str, str]:
     """Projects of students that have another one."""
     if not path.is_file():
         return {}
-    text, data, _ = toml_file.read(path)
-    lines = text.splitlines()
+    _, data, lines = toml_file.read(path)
     problems = []
     for name, project in data.items():
-        at = next((n for n, line in enumerate(lines, 1) if line.partition("=")[0].strip().strip("\"'") == name), None)
+        at = lines.line((name,))
         if name not in works:
             problems.append(Problem(tell("there is no such student in the folder"), str(path), at, name))
         elif not isinstance(project, str):

@@ -11,7 +11,8 @@ from math import pi
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Writing
+from tmm_sheets.compare.cad.cad_ink import LETTER_WIDTH, DrawingSpace, Writing
+from tmm_sheets.compare.elements import point_along
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.lettering import advance, plain
@@ -69,7 +70,8 @@ def _wrong_looks(looks: Sequence[tuple[Sequence[Points], str]]) -> list[Mark]:
     for places, number in looks:
         for z in places:
             canvas.polyline(z, "vector")
-        canvas.text(_beside_middle(places[0]), number, 3.5)
+        z = places[0]
+        canvas.text(point_along(z, float(np.abs(np.diff(z)).sum()) / 2) + 1.5 * (1 + 1j), number, HIGH)  # beside its middle
     return canvas.marks
 
 
@@ -82,14 +84,6 @@ def _marked(found: Sequence[tuple[complex, float, str, str]]) -> list[Mark]:
             canvas.line(*one.leader, "axis")
         canvas.text(one.at, one.text, HIGH, "left")
     return canvas.marks
-
-
-def _beside_middle(z: Points) -> complex:
-    """A place beside the middle of a line."""
-    run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(z)))))
-    k = min(int(np.searchsorted(run, run[-1] / 2, "right")), len(z) - 1)
-    t = (run[-1] / 2 - run[k - 1]) / max(run[k] - run[k - 1], 1e-9)
-    return complex(z[k - 1] + t * (z[k] - z[k - 1])) + 1.5 * (1 + 1j)
 
 
 def _write(canvas: Canvas, w: Writing) -> None:
@@ -121,10 +115,8 @@ def _dxf(marks: Mapping[str, Sequence[Mark]]) -> bytes:
 
 HEIGHT = 4.0
 """Height of the words, mm."""
-START, GAP = 12.0 + 30.0j, 12.0
-"""Where the first entry begins, and what is free after each, mm."""
-SAMPLE = 12.0
-"""Length of the sample of a line, mm."""
+START, SAMPLE = 12.0 + 30.0j, 12.0
+"""Where the first entry begins, and the length of the sample of a line, mm; after each as much is free."""
 
 
 def around(verdict: str, at: complex, radius: float) -> Points:
@@ -141,12 +133,10 @@ def legend(entries: Sequence[tuple[str, str]]) -> list[list[Points]]:
         sample = np.array([along, along + SAMPLE]) + 0.5j * HEIGHT if form == "line" else around(form, middle, 0.8 * HEIGHT)
         at = along + SAMPLE + 0.5 * HEIGHT
         out.append([START + 1j * z for z in (sample, *letters(Text(complex(at), words, HEIGHT)))])
-        along = at + advance(words, HEIGHT) + GAP
+        along = at + advance(words, HEIGHT) + SAMPLE
     return out
 
 
-WIDE = 0.62
-"""Width of a digit with the space after it, in heights."""
 WAYS = np.exp(1j * pi * np.array([1, 3, -1, -3, 0, 2, 4, -2, 0.5, 1.5, 2.5, 3.5, -0.5, -1.5, -2.5, -3.5]) / 4)
 """Directions in which a number may stand from its place, those first that are tried first."""
 RINGS = 24
@@ -174,10 +164,10 @@ def numbered(places: Sequence[tuple[complex, float, str]], height: float, within
     taken: list[Box] = []
     out: list[Numbered] = []
     for centre, radius, text in places:
-        size = complex(WIDE * height * len(text), height)
+        size = complex(LETTER_WIDTH * height * len(text), height)
         box, ring = _free(centre, radius, size, taken, within)
         taken.append(box)
-        near = min(max(centre.real, box.x0), box.x1) + 1j * min(max(centre.imag, box.y0), box.y1)
+        near = box.nearest(centre)
         away = near - centre
         far = ring > 0 and abs(away) > radius + 0.5 * height
         leader = (centre + away / abs(away) * radius, near) if far else None

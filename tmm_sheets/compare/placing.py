@@ -28,10 +28,11 @@ from pydantic import BeforeValidator, Field, model_validator
 from tmm_sheets import spelling, toml_file
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView, grouped
-from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Role, Text
+from tmm_sheets.drawing.marks import Fill, Line, Mark, Points, Role, moved as moved_mark
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.task import messages
+from tmm_sheets.task import messages, units
 from tmm_sheets.task.schema import Table
+from tmm_sheets.task.values import positive
 from tmm_sheets.words import marked, tell, tell_n
 
 BEYOND = 15.0
@@ -124,7 +125,8 @@ def moved(e: Element, by: Placing) -> Element:
         if e.role != "dimension":
             by, size = by.unscaled(e.middle), 1.0
         e = replace(e, kind="hatch", pieces=e.pieces or (e.points,))
-    marks = tuple(_moved_mark(mark, by) for mark in e.marks)
+    marks = tuple(mark._replace(points=_head(np.asarray(mark.points), by)) if isinstance(mark, Fill) else
+                  moved_mark(mark, by.shift, by.turn) for mark in e.marks)
     if by.scaled and e.arrow and e.kind == "line":
         marks = shafts(e.marks, marks, e.points, by(e.points))
     return replace(
@@ -164,19 +166,6 @@ def _head(points: Points, by: Placing) -> Points:
     return np.asarray(by.unscaled(complex(points[0]))(points))
 
 
-def _moved_mark(mark: Mark, by: Placing) -> Mark:
-    size, angle = by.scale, float(np.angle(by.turn))
-    if isinstance(mark, Line):
-        return mark._replace(a=by(mark.a), b=by(mark.b))
-    if isinstance(mark, Arc):
-        return mark._replace(centre=by(mark.centre), radius=mark.radius * size, start=mark.start + angle, end=mark.end + angle)
-    if isinstance(mark, Text):
-        return mark._replace(at=by(mark.at), height=mark.height * size, angle=mark.angle + angle)
-    assert isinstance(mark, Polyline | Fill)
-    points = np.asarray(mark.points)
-    return mark._replace(points=_head(points, by) if isinstance(mark, Fill) else by(points))
-
-
 # --- the file of --views --------------------------------------------------------------------------------------------------------
 
 
@@ -213,12 +202,6 @@ def _points(value: Any) -> tuple[complex, ...]:
     return tuple(complex(x, y) for x, y in pairs)
 
 
-def _positive(value: Any) -> float:
-    if not _finite(value) or value <= 0:
-        raise ValueError(tell("expected a positive number"))
-    return float(value)
-
-
 def _finite(x: Any) -> bool:
     return isinstance(x, int | float) and not isinstance(x, bool) and isfinite(x)
 
@@ -229,7 +212,7 @@ class ViewTable(Table):
     name: str = Field(description=marked("the title of a view of the sheet"))
     ours: Annotated[Any, BeforeValidator(_points)] = Field(description=marked("points [[x, y], [x, y]]"))
     theirs: Annotated[Any, BeforeValidator(_points)] = Field(description=marked("points [[x, y], [x, y]]"))
-    mu: Annotated[float, BeforeValidator(_positive)] | None = None
+    mu: Annotated[float, positive(units.NUMBER, marked("expected a positive number"))] | None = None
 
     @model_validator(mode="after")
     def _two_points(self) -> Self:

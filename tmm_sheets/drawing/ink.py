@@ -50,7 +50,7 @@ def ink(marks: Iterable[Mark], sagitta: float = SAGITTA) -> Iterator[InkStroke]:
         elif isinstance(mark, Fill):
             yield InkStroke(np.asarray(mark.points), 0.0, True)
         else:
-            yield InkStroke(_points(mark, sagitta), line_type(mark.style).width)
+            yield InkStroke(centre_line(mark, sagitta), line_type(mark.style).width)
 
 
 def letters(text: Text) -> Iterator[Points]:
@@ -81,7 +81,8 @@ def check(mark: Mark) -> None:
         raise ValueError(f"a mark of '{mark.of}' has no finite place: {mark}")
 
 
-def _points(mark: Line | Arc | Polyline, sagitta: float) -> Points:
+def centre_line(mark: Mark, sagitta: float = SAGITTA) -> Points:
+    """Line of a mark, the outline of a filled one; ``sagitta``: mm between an arc and its chords."""
     if not isinstance(mark, Arc):
         return flat(mark)
     step = 2 * acos(max(1 - sagitta / mark.radius, 0.0)) if mark.radius > 0 else 1.0

@@ -5,6 +5,7 @@ The look of a mark is the name of a line type (``templates/linetypes.toml``). Po
 
 from __future__ import annotations
 
+from cmath import phase
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple
@@ -189,17 +190,19 @@ class Drawing:
     forms: tuple[Form, ...] = field(default=(), repr=False)
 
 
-def moved(mark: Mark, by: complex) -> Mark:
-    """The mark translated by ``by``, complex mm."""
+def moved(mark: Mark, by: complex, turn: complex = 1 + 0j) -> Mark:
+    """The mark turned and grown by ``turn`` about the origin, then translated by ``by``, complex mm."""
+    size, angle = abs(turn), phase(turn)
     match mark:
         case Line():
-            return mark._replace(a=mark.a + by, b=mark.b + by)
+            return mark._replace(a=turn * mark.a + by, b=turn * mark.b + by)
         case Arc():
-            return mark._replace(centre=mark.centre + by)
+            return mark._replace(centre=turn * mark.centre + by, radius=mark.radius * size, start=mark.start + angle,
+                                 end=mark.end + angle)
         case Text():
-            return mark._replace(at=mark.at + by)
+            return mark._replace(at=turn * mark.at + by, height=mark.height * size, angle=mark.angle + angle)
         case _:
-            return mark._replace(points=mark.points + by)
+            return mark._replace(points=turn * mark.points + by)
 
 
 def flat(mark: Mark, step: float = 0.5) -> Points:

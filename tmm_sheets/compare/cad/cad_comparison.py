@@ -30,7 +30,7 @@ from tmm_sheets.compare.cad.line_fit import (
     union,
 )
 from tmm_sheets.compare.codes import Remark
-from tmm_sheets.compare.elements import Element, ElementView, grouped
+from tmm_sheets.compare.elements import Element, ElementView, grouped, point_along
 from tmm_sheets.compare.findings import Finding, Verdict, verdict
 from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.drawing.marks import Fill, Line, Points, Text
@@ -178,7 +178,7 @@ class Comparison:
     owned : for elements found elsewhere, the pieces of theirs they claim, from where to where
     areas : middles of their areas
     used_areas, used_writings : areas and writings that belong to elements
-    zones, lettered : outlines within which any ink, or short strokes only, may lie
+    zones : outlines within which any ink may lie
     """
 
     in_place: Overlaps
@@ -200,7 +200,6 @@ class Comparison:
         self.used_areas: set[int] = set()
         self.used_writings: set[int] = set()
         self.zones: list[Points] = []
-        self.lettered: list[Points] = []
 
     def ours(self, numbers: Sequence[int]) -> tuple[KnownLines, npt.NDArray[np.int64], Numbers]:
         """Straight pieces of the paths of some elements, the element of each piece, and how far along its path it begins, mm."""
@@ -252,16 +251,13 @@ class Comparison:
                  at: complex | None = None) -> CadFinding:
         """A finding for element ``n``, judged by its deviation, mm."""
         e = self.elements[n]
-        z = e.points
-        middle, reach = (middle_of(z), reach_of(z)) if at is None else (at, min(reach_of(z), 5.0))
+        middle, reach = (e.middle, reach_of(e.points)) if at is None else (at, min(reach_of(e.points), 5.0))
         return CadFinding(e, verdict(deviation, self.tolerance), deviation, remark, middle, reach, shift, turn, size, missing,
                           entities)
 
     def at(self, n: int, t: float) -> complex:
         """The point at a distance along the path of an element, mm."""
-        z = np.concatenate(self.paths[n])
-        along = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(z)))))
-        return complex(np.interp(t, along, z.real), np.interp(t, along, z.imag))
+        return point_along(np.concatenate(self.paths[n]), t)
 
     def entities_of(self, pieces: Iterable[int]) -> tuple[int, ...]:
         """Numbers of the entities of some pieces, each once."""
@@ -286,11 +282,6 @@ def _paths(e: Element) -> list[Points]:
     return [e.points] if ink else []
 
 
-def middle_of(z: Points) -> complex:
-    """Middle of the bounding rectangle of points."""
-    return Box.around(z).centre
-
-
 def reach_of(z: Points) -> float:
     """Radius of the circle that marks points on an overlay, mm."""
-    return min(max(float(np.abs(z - middle_of(z)).max()), 3.0), 20.0)
+    return min(max(float(np.abs(z - Box.around(z).centre).max()), 3.0), 20.0)

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import cad_lettering
 from tmm_sheets.compare.cad.cad_comparison import (
@@ -21,15 +22,14 @@ from tmm_sheets.compare.cad.cad_comparison import (
     CadFinding,
     Comparison,
     ExtraStroke,
-    middle_of,
     reach_of,
 )
 from tmm_sheets.compare.cad.cad_ink import Entity, normal
 from tmm_sheets.compare.cad.line_fit import KnownLines, Left, Numbers, common, extent, hanging_together, pieces, shapes
 from tmm_sheets.compare.cad.plan_ink import CENTRES, RESULTANTS
-from tmm_sheets.compare.cad.symbol_matching import AT_TIP
+from tmm_sheets.compare.cad.symbol_matching import AT_TIP, NEAR
 from tmm_sheets.compare.codes import Number, joined
-from tmm_sheets.compare.elements import Element, grouped
+from tmm_sheets.compare.elements import Element, grouped, grown
 from tmm_sheets.compare.findings import place, verdict
 from tmm_sheets.compare.placing import HINGE
 from tmm_sheets.drawing.marks import Points
@@ -132,8 +132,6 @@ SHORT_GAP = 4.5
 """Gap between two lines of the sheet, mm, that a line drawn through may close."""
 TOUCHING = 0.06
 """Distance of places that count as one, mm."""
-FILLED = 1.5
-"""How far from its place a filled area that is none may be, mm."""
 HEAP = 14.0
 """Width plus height of the smallest extra ink that is not put together with its neighbours, mm."""
 
@@ -184,7 +182,8 @@ def _outside_zones(state: Comparison, rest: list[Left]) -> dict[Left, float]:
     import shapely
 
     any_ink = shapely.union_all(_free_zones(state))
-    both = shapely.union_all([any_ink, *(_polygon(z) for z in state.lettered)])
+    lettering = (grown(f.element.points, 0.8) for f in state.found.values() if f.element.kind == "text" and not f.missing)
+    both = shapely.union_all([any_ink, *map(_polygon, lettering)])
     free = pieces(state.theirs, rest)
     short = np.bincount(state.theirs.owner, state.theirs.length)[state.theirs.owner[free.owner]] < SHORT
     outside = np.zeros(len(rest))
@@ -248,16 +247,14 @@ def _too_long(state: Comparison, n: int, size: float, chain: list[Left]) -> None
     e, old = state.elements[n], state.found[n]
     if e.style in LOOSE_STYLES and size < BEYOND:
         return
-    r = chain[0]
-    piece = state.theirs.b[r.piece] - state.theirs.a[r.piece]
-    at = complex(state.theirs.a[r.piece] + (r.a + r.b) / 2 * piece / abs(piece))
+    at = complex(state.ends(chain[0]).mean())
     remark = codes.TOO_LONG_AT(by=Number(f"{size:.1f}"), place=place(at))
     deviation = max(old.deviation, size)
     judged = verdict(deviation, state.tolerance)
     if judged == "red" and e.style in LOOSE_STYLES and old.verdict != "red":
         judged = "amber"
     where = (at, 5.0) if old.verdict == "green" else (old.at, old.reach)
-    entities = tuple(dict.fromkeys((*old.entities, *state.entities_of([r.piece]))))
+    entities = tuple(dict.fromkeys((*old.entities, *state.entities_of([chain[0].piece]))))
     state.found[n] = replace(old, deviation=deviation, verdict=judged, remark=joined((old.remark, remark)),
                              at=where[0], reach=where[1], size=(old.size or 0.0) + size, entities=entities)
 
@@ -278,7 +275,7 @@ def _extra_lines(state: Comparison, extra: list[tuple[list[Left], float]]) -> It
             small.append((k, size, z))
         else:
             yield _stroke(state.space.entities[k], size, z)
-    middles = np.array([middle_of(z) for _, _, z in small], dtype=complex)
+    middles = np.array([Box.around(z).centre for _, _, z in small], dtype=complex)
     for heap in hanging_together(len(small), *np.nonzero(np.abs(middles[:, None] - middles) < 5.0)):
         z = np.concatenate([small[k][2] for k in heap])
         yield _stroke(state.space.entities[small[heap[0]][0]], sum(small[k][1] for k in heap), z, len(heap))
@@ -286,7 +283,7 @@ def _extra_lines(state: Comparison, extra: list[tuple[list[Left], float]]) -> It
 
 def _stroke(entity: Entity, size: float, z: Points, count: int = 1) -> ExtraStroke:
     """So many mm of line through some points, from an entity and others beside it."""
-    return ExtraStroke("arc" if entity.kind in ROUND else "line", entity, size, middle_of(z), reach_of(z), count)
+    return ExtraStroke("arc" if entity.kind in ROUND else "line", entity, size, Box.around(z).centre, reach_of(z), count)
 
 
 def _extra_areas(state: Comparison, extra: KnownLines) -> Iterator[ExtraStroke]:
@@ -297,6 +294,6 @@ def _extra_areas(state: Comparison, extra: KnownLines) -> Iterator[ExtraStroke]:
         around = float(np.abs(np.diff(np.append(z, z[:1]))).sum())
         if k in state.used_areas or not area.solid or around < 2.0:
             continue
-        if (np.abs(known - state.areas[k]) < FILLED).any() or extra.nearest(z, AT_TIP)[2].any():
+        if (np.abs(known - state.areas[k]) < NEAR).any() or extra.nearest(z, AT_TIP)[2].any():
             continue
-        yield ExtraStroke("fill", state.space.entities[area.entity], around, middle_of(z), reach_of(z))
+        yield ExtraStroke("fill", state.space.entities[area.entity], around, Box.around(z).centre, reach_of(z))

@@ -21,8 +21,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tmm_sheets import files
-from tmm_sheets.compare.cad.cad_ink import Area, CadInk, DrawingSpace, DrawnStroke, Entity, Pattern, Writing, of_dashes
+from tmm_sheets.box import Box
+from tmm_sheets.compare.cad.cad_ink import (
+    LETTER_WIDTH,
+    Area,
+    CadInk,
+    DrawingSpace,
+    DrawnStroke,
+    Entity,
+    Pattern,
+    Writing,
+    of_dashes,
+)
 from tmm_sheets.compare.placing import Placing
+from tmm_sheets.drawing.ink import polyline_inside
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.numbers import told
@@ -54,8 +66,6 @@ FARTHEST = 1e100
 """Drawing units from the origin that coordinates have at most: of more no product is a number."""
 MOST_HATCH = 20_000
 """Lines of one hatching that are drawn."""
-NARROW = 0.62
-"""Average width of a letter in letter heights; the font is not known."""
 UNREAD = {"3DSOLID", "BODY", "REGION", "SURFACE", "MESH", "IMAGE", "OLE2FRAME", "ACAD_PROXY_ENTITY", "PDFUNDERLAY", "WIPEOUT"}
 CURVES = {"ARC", "CIRCLE", "ELLIPSE", "SPLINE"}
 """Entities flattened by themselves: with few Bezier curves a turn they would be off by 0.03 % of the radius."""
@@ -455,7 +465,7 @@ def _text(e: Any, n: int, encoding: str) -> Iterator[Writing]:
     name = align.name
     text, height = words(e.plain_text(), encoding), float(e.dxf.height)
     angle = radians(e.dxf.get("rotation", 0.0))
-    width = NARROW * height * len(text) * float(e.dxf.get("width", 1.0))
+    width = LETTER_WIDTH * height * len(text) * float(e.dxf.get("width", 1.0))
     p = e.ocs().to_wcs(p)
     at = complex(p.x, p.y)
     if q is not None and name in ("ALIGNED", "FIT"):
@@ -482,7 +492,7 @@ def _mtext(e: Any, n: int, encoding: str) -> Iterator[Writing]:
     pitch = 5 / 3 * height * float(e.dxf.get("line_spacing_factor", 1.0))
     whole = height + pitch * (len(lines) - 1)
     for i, line in enumerate(lines):
-        width = NARROW * height * len(line)
+        width = LETTER_WIDTH * height * len(line)
         yield Writing(line, at + u * complex(width * (0.5 - x), whole * (1 - y) - i * pitch - height / 2), height, width, angle, n)
 
 
@@ -537,21 +547,11 @@ def _dashes(line: Any) -> list[float]:
 
 def _with_viewport(paper: DrawingSpace, model: DrawingSpace, placing: Placing, low: complex, high: complex) -> DrawingSpace:
     """Paper space with the contents of one viewport: the model where the viewport shows it, clipped at its edges."""
-    import shapely
-
-    first = len(paper.entities)
-    seen = model.placed(placing)
-
-    def inside(z: complex) -> bool:
-        return low.real <= z.real <= high.real and low.imag <= z.imag <= high.imag
-
-    strokes = []
-    for s in seen.strokes:
-        line = shapely.linestrings(np.column_stack((s.points.real, s.points.imag)))
-        for part in shapely.get_parts(shapely.clip_by_rect(line, low.real, low.imag, high.real, high.imag)):
-            strokes.append(DrawnStroke(_xy(shapely.get_coordinates(part)), s.entity + first))
-    areas = [a._replace(entity=a.entity + first) for a in seen.areas if inside(complex(a.points.mean()))]
-    writings = [w._replace(entity=w.entity + first) for w in seen.writings if inside(w.at)]
+    first, seen = len(paper.entities), model.placed(placing)
+    port = Box(low.real, low.imag, high.real, high.imag)
+    strokes = (DrawnStroke(part, s.entity + first) for s in seen.strokes for part in polyline_inside(port, s.points))
+    areas = [a._replace(entity=a.entity + first) for a in seen.areas if port.contains(complex(a.points.mean()))]
+    writings = [w._replace(entity=w.entity + first) for w in seen.writings if port.contains(w.at)]
     return replace(paper, strokes=paper.strokes + tuple(s for s in strokes if len(s.points) > 1),
                    areas=paper.areas + tuple(areas), writings=paper.writings + tuple(writings),
                    entities=paper.entities + seen.entities)

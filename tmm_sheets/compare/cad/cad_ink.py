@@ -126,6 +126,10 @@ def pointed(z: Points) -> complex | None:
     return far if abs(far) > POINTED * np.median(np.abs(from_middle)) else None
 
 
+LETTER_WIDTH = 0.62
+"""Average width of a letter with the space after it, in letter heights; the font is not known."""
+
+
 class Writing(NamedTuple):
     """A text: ``at`` is roughly its middle, ``width`` is estimated; ``angle`` rad."""
 

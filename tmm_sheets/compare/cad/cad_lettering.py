@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations, permutations
 from math import inf
 
 import numpy as np
@@ -15,7 +14,7 @@ from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_comparison import ELSEWHERE, Comparison
 from tmm_sheets.compare.cad.cad_ink import Writing, normal
 from tmm_sheets.compare.cad.line_fit import ONE_PLACE, extent, lines, overlaps
-from tmm_sheets.compare.elements import Element, grouped, grown
+from tmm_sheets.compare.elements import Element, grouped
 from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Text
 
@@ -23,12 +22,8 @@ SIZES = 1.2
 """How many times as high as another a text of the same size may be."""
 ARROWS = str.maketrans("", "", "→←↑↓")
 """Signs that may be drawn among the texts."""
-MOST = 8
-"""So many texts are tried in all ways in which one or two of them belong to another label."""
 WORDS = re.compile(r"[^\W\d_]{4}")
 """What a title has and a label has not."""
-SOME = 4
-"""A label with more parts is left out whole."""
 
 
 @dataclass(frozen=True)
@@ -76,36 +71,25 @@ class _Reading:
                 self._take(n, k)
 
     def joined(self) -> None:
-        """Several texts that make one: those within its box, or else those ever a little farther off; last all but one or two.
+        """Several texts that make one: those within its box, or else those ever a little farther off.
 
         A part of a label that stands close by may lie in the box, too.
         """
-        for strangers in (0, 1, 2):
+        for strangers in (False, True):
             for margin in (0.0, 0.25, 0.5):
                 for n, want in self._missing():
-                    near = [k for k in self._texts_near(want)
-                            if k in self.free and _inside(want, self.writings[k].at, margin * (want.height + 1.0) + ONE_PLACE)]
-                    if order := next(filter(None, (self._spelling(some, want) for some in _all_but_some(near, strangers))), None):
-                        self._take(n, *order)
+                    near = self._texts_in_line([k for k in self._texts_near(want) if k in self.free and _inside(
+                        want, self.writings[k].at, margin * (want.height + 1.0) + ONE_PLACE)], want)
+                    texts, wanted = [meant(self.writings[k].text) for k in near], meant(want.text)
+                    order = spelled(wanted, texts) or spelled(wanted.translate(ARROWS), texts)
+                    if order and (strangers or len(order) == len(near)):
+                        self._take(n, *(near[k] for k in order))
 
-    def _spelling(self, near: list[int], want: Element) -> list[int]:
-        """The texts in an order in which they make the wanted one; none if there is no such order.
-
-        They follow one another by their middles or by their left ends; of indices above one another either may be first.
-        """
-        meaning, several = meant(want.text), len(near) > 1
-        for ends, lift in ((0.0, 0.0), (0.5, 0.0), (0.5, 0.5), (0.5, -0.5)):
-            order = self._texts_in_line(near, want, ends, lift)
-            if order and _says_the_same(meant("".join(self.writings[k].text for k in order)), meaning, several):
-                return order
-        return []
-
-    def _texts_in_line(self, near: list[int], want: Element, ends: float = 0.5, lift: float = 0.0) -> list[int]:
-        """Texts in the direction of a wanted one, by their left ends (0.5) or middles (0); ``lift`` puts off what stands higher."""
+    def _texts_in_line(self, near: Sequence[int], want: Element) -> list[int]:
+        """Texts in the direction of a wanted one, by their left ends."""
         along = want.points[1] - want.points[0]
         u = np.conj(along) / max(abs(along), 1e-9)
-        place = {k: (self.writings[k].at - want.middle) * u - ends * self.writings[k].width for k in near}
-        return sorted(near, key=lambda k: (place[k].real + lift * place[k].imag, k))
+        return sorted(near, key=lambda k: (((self.writings[k].at - want.middle) * u).real - 0.5 * self.writings[k].width, k))
 
     def contained(self) -> None:
         """A text with ours among its words."""
@@ -126,7 +110,7 @@ class _Reading:
                 want = self.wanted[n]
                 parts = {k, *(j for j in self._texts_near(want) if j in self.free and _inside(want, self.writings[j].at, ONE_PLACE)
                               and not self._title_of_another(n, j))}
-                order = self._texts_in_line(list(parts), want)
+                order = self._texts_in_line([*parts], want)
                 self._take(n, *order, says="".join(self.writings[j].text for j in order).strip())
 
     def _meant_for(self, n: int, k: int) -> bool:
@@ -158,17 +142,17 @@ class _Reading:
         return np.flatnonzero(np.abs(self.at - want.middle) < abs(want.points[2] - want.points[0]) / 2 + reach).tolist()
 
 
-def _all_but_some(near: list[int], strangers: int) -> Iterator[list[int]]:
-    """All of some texts, then all but one, and so on; two are left at least."""
-    yield near
-    for less in range(1, min(strangers, len(near) - 2) + 1 if len(near) <= MOST else 0):
-        yield from map(list, combinations(near, len(near) - less))
+def spelled(wanted: str, texts: Sequence[str]) -> list[int] | None:
+    """Numbers of texts that make the wanted one, one after another in any order; None where none do.
 
-
-def _says_the_same(joined: str, wanted: str, several: bool) -> bool:
-    """Whether texts put together are the wanted one; indices may come in another order, but numbers keep their digits."""
-    wanted = wanted.translate(ARROWS) if several and joined == joined.translate(ARROWS) else wanted
-    return joined == wanted or (several and sorted(joined) == sorted(wanted) and _digits(joined) == _digits(wanted))
+    Of indices above one another either may come first.
+    """
+    for k, text in enumerate(texts):
+        if text and wanted.startswith(text):
+            rest = spelled(wanted[len(text):], [*texts[:k], "", *texts[k + 1:]])
+            if rest is not None:
+                return [k, *rest]
+    return None if wanted else []
 
 
 def meant(text: str) -> str:
@@ -183,18 +167,13 @@ def parts(text: str) -> list[str]:
 
 def says_less(text: str, wanted: str) -> bool:
     """Whether a text is a label without some of its parts, in any order."""
-    some = parts(wanted)
-    return any(meant(text) == "".join(few) for size in range(1, min(len(some), SOME) + 1) for few in permutations(some, size))
+    return bool(spelled(meant(text), parts(wanted)))
 
 
 def _has(text: str, part: str) -> bool:
     """Whether the words of a part follow one another in a text."""
     words, wanted = [meant(w) for w in text.split()], [meant(w) for w in part.split()]
     return any(words[k : k + len(wanted)] == wanted for k in range(len(words) - len(wanted) + 1))
-
-
-def _digits(text: str) -> str:
-    return "".join(c for c in text if c.isdigit())
 
 
 def _inside(want: Element, z: complex, margin: float) -> bool:
@@ -226,7 +205,6 @@ def texts(state: Comparison) -> None:
         else:
             other = state.finding(n, 4 * state.tolerance, codes.SAYS(found=answer.says, wanted=wanted[k].text), entities=entities)
             state.found[n] = replace(other, says=answer.says)
-        state.lettered.append(grown(wanted[k].points, 0.8))
     for n in set(numbers) - state.found.keys():
         state.paths[n] = [stroke for mark in state.elements[n].marks if isinstance(mark, Text) for stroke in letters(mark)]
     _of_own_places(state)
@@ -255,6 +233,5 @@ def drawn_letters(state: Comparison) -> None:
             state.claim(overlaps(lines(e.pieces), state.theirs, 1.0).inked)
         elif inked > 0.4 * state.whole(n):
             state.found[n] = state.finding(n, 4 * state.tolerance, codes.OTHER_LETTERS(text=e.text))
-            state.lettered.append(grown(e.points, 0.8))
         else:
             state.found[n] = state.finding(n, 2 * state.tolerance, codes.TEXT_MISSING(text=e.text), missing=True)

@@ -292,8 +292,7 @@ class Overlaps(NamedTuple):
 
     def only(self, keep: npt.NDArray[np.bool_] | npt.NDArray[np.intp]) -> Overlaps:
         """The rows to keep."""
-        ours, s0, s1, theirs, w0, w1, off0, off1 = self
-        return Overlaps(ours[keep], s0[keep], s1[keep], theirs[keep], w0[keep], w1[keep], off0[keep], off1[keep])
+        return Overlaps._make(x[keep] for x in self)
 
 
 def overlaps(ours: KnownLines, theirs: KnownLines, reach: float, steep: float = STEEP, flat: float = FLAT) -> Overlaps:

@@ -138,8 +138,7 @@ def _wrong_types(state: Comparison, ink: ByElement) -> list[LookFinding]:
 
 
 def _pattern_of(style: str) -> Pattern:
-    pattern = line_type(style).pattern
-    return of_dashes(pattern) if pattern else "continuous"
+    return of_dashes(line_type(style).pattern)
 
 
 def _has_strokes(state: Comparison, n: int) -> bool:
