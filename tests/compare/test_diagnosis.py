@@ -74,6 +74,13 @@ def test_students_are_told_what_they_did(number, kinds):
     assert sum(j.starts for j in one.judged) == len(kinds), str(one)
 
 
+def test_a_vector_without_length_tells_no_way_to_what_follows():
+    """At a dead position |pd5| is read as 1 mm for 0: which way it points, and the sign of M_пр, nobody can tell."""
+    one = student("lugansk/shaper", 3, 31, ())
+    assert one is not None
+    assert not any(j.starts for j in one.judged), str(one)
+
+
 @pytest.mark.parametrize("wrong", [("intersection",), seldom(("sense",)), seldom(("intersection", "sense"))])
 def test_what_two_mistakes_leave_right_proves_of_neither_that_it_was_not_made(wrong):
     """The other intersection turns ε2 round; turned round once more it is right."""

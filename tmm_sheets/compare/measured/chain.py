@@ -22,7 +22,7 @@ import numpy as np
 
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.codes import Number, Own, Remark, Sentence, joined
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind
+from tmm_sheets.compare.diagnosis.hypotheses import TOLD, Hypothesis, Kind
 from tmm_sheets.compare.elements import grouped
 from tmm_sheets.compare.measured import measurable as units
 from tmm_sheets.compare.measured.evidence import CURVED, REACH, Evidence, Explanation, JudgedValue, Place, place_of
@@ -35,8 +35,8 @@ from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.numbers import rounded
 from tmm_sheets.words import marked
 
-FEW, NEARLY_ALL = 4, 0.85
-"""Fewer numbers than this must all be explained, more of them to this share."""
+NEARLY_ALL = 0.85
+"""Share of the numbers it concerns that a mistake of the whole table must explain: of three or fewer all."""
 POSITIONS = "positions"
 """Name of the plan of the positions."""
 UNIT = Sentence("unit", marked("{unit}, not {own}"))
@@ -94,7 +94,7 @@ def _explained(judged: Sequence[JudgedValue], meant: Mapping[str, float]) -> int
     shown = [j for j in judged if j.entry.id in meant and np.isfinite(j.tolerance)
              and abs(j.off(j.line.value) - j.off(meant[j.entry.id])) > 2 * REACH * j.tolerance]
     good = sum(abs(j.off(meant[j.entry.id])) <= REACH * j.tolerance < abs(j.deviation) for j in shown)
-    return good if LEAST <= good >= (len(shown) if len(shown) < FEW else NEARLY_ALL * len(shown)) else 0
+    return good if LEAST <= good >= NEARLY_ALL * len(shown) else 0
 
 
 def _whole(kind: Kind, words: str, some: Sequence[JudgedValue], meant: Sequence[float], other: str | Remark = "",
@@ -172,8 +172,6 @@ LONG = 10.0
 """Length in mm that a pencil can draw: one that has a larger error than itself comes from a degenerate construction."""
 ANY_WAY = 60.0
 """Tolerance of an angle, degrees, with which it may be any."""
-MOST_TOLD = 3
-"""Own numbers that are named."""
 CHANCE = 1e-3
 """How often a file without any mistake may be accused of one."""
 EXACT = 1e-6
@@ -194,11 +192,6 @@ def judge(filled: FilledTable, found: Measurables, pencil: float, reading: float
         lines = [whole.line(line) for line in lines]
         judged = [_judged(line, found, filled.factors, errors, reading) for line in lines]
     computed = _check_arithmetic(judged, filled, found)
-    for j in judged:
-        if j.verdict == "red" and all(n.verdict == "green" for n in computed.get(id(j), ())):
-            computed.pop(id(j), None)  # rounding of numbers that are in order makes none wrong
-    for j in judged:
-        j.order = max((errors.order(s) for s, _, _ in j.entry.terms), default=len(judged))
     # What was computed rightly from other numbers of the file is no witness of its own: it is as wrong as they are.
     if judged:
         own = OwnNumbers(judged, errors)
@@ -245,7 +238,8 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
     # What cannot be drawn, and what is so badly conditioned that its error is as large as itself.
     elif not isfinite(tolerance) or tolerance > {"length": max(abs(exact), LONG), "angle": ANY_WAY}.get(e.kind, tolerance):
         tolerance = float("inf")
-    judged = JudgedValue(line, exact, e.off(line.value, exact), max(tolerance, EXACT), rows, size=size, reading=own)
+    judged = JudgedValue(line, exact, e.off(line.value, exact), max(tolerance, EXACT), rows, size=size, reading=own,
+                         order=max((errors.order(s) for s, _, _ in e.terms), default=len(found.entries)))
     judged.noted = _noted(judged, line.value if e.signed else abs(line.value), tolerance)
     return judged
 
@@ -323,7 +317,8 @@ def _check_arithmetic(judged: list[JudgedValue], filled: FilledTable, found: Mea
         allowed += CALCULATED * max(map(abs, parts))
         apart = j.line.value - expected if j.entry.signed else abs(j.line.value) - abs(expected)
         if abs(apart) <= allowed:
-            computed[id(j)] = needs
+            # Rounding of numbers that are in order makes none wrong.
+            computed |= {id(j): needs} if j.verdict != "red" or any(n.verdict != "green" for n in needs) else {}
         elif abs(j.deviation) > CALCULATED * abs(j.exact) + j.line.half_digit:
             j.inconsistent = True
             j.noted = joined((j.noted, _contradicts_own_numbers(needs, expected)), "; ")
@@ -422,9 +417,8 @@ def _beyond_chance(count: int) -> float:
 def _own_reason(own: OwnNumbers, j: JudgedValue, computed: Mapping[int, list[JudgedValue]]) -> JudgedValue | None:
     """The mistake that a red number follows from by the student's own earlier numbers; None when it does not follow from them."""
     made = own.value(j)
-    if made is None or not isfinite(made.tolerance):
-        return None
-    if abs(j.deviation - made.expected) > 2 * hypot(made.tolerance, CURVED * made.expected):
+    if made is None or not isfinite(made.tolerance) or abs(j.deviation - made.expected) > 2 * hypot(
+            made.tolerance, CURVED * made.expected):
         return None
     for earlier, part in made.reasons:
         origin = _origin(earlier, computed)
@@ -444,7 +438,7 @@ def _against_own(own: OwnNumbers, left: set[int]) -> None:
         made = own.value(j) if judgeable else None
         if made is not None and seen.isdisjoint(made.known_in_part) and _contradicts(j, made, beyond):
             j.off_own = j.starts = True
-            j.noted = _contradicts_own_numbers([m for m, _ in made.reasons[:MOST_TOLD]], j.exact + made.expected)
+            j.noted = _contradicts_own_numbers([m for m, _ in made.reasons[:TOLD]], j.exact + made.expected)
         if j.verdict == "red":
             seen |= {place_of(step, k) for step, k, _ in j.entry.terms}
 
@@ -452,9 +446,7 @@ def _against_own(own: OwnNumbers, left: set[int]) -> None:
 def _contradicts(j: JudgedValue, made: OwnValue, beyond: float) -> bool:
     """Whether a number does not follow from those it was made of; a right one is no mistake where they are wrong."""
     apart, doubt = abs(j.deviation - made.expected), CURVED * made.expected
-    if apart <= beyond * hypot(j.reading, doubt) or apart <= beyond * hypot(made.tolerance, doubt):
-        return False
     # Of a point or a force that is off only one direction was measured.
-    if any(m.verdict == "red" and np.iscomplexobj(step.value) for m, _ in made.reasons for step, _, _ in m.entry.terms):
-        return False
-    return j.verdict == "red" or all(m.verdict == "green" for m, _ in made.reasons)
+    half_known = any(m.verdict == "red" and np.iscomplexobj(step.value) for m, _ in made.reasons for step, _, _ in m.entry.terms)
+    return apart > beyond * max(hypot(j.reading, doubt), hypot(made.tolerance, doubt)) and not half_known and (
+        j.verdict == "red" or all(m.verdict == "green" for m, _ in made.reasons))

@@ -287,10 +287,9 @@ class Evidence:
 
         Further on it may have been gone on with otherwise, by lengths without their senses.
         """
-        if done_in(h, j.entry.plan):
-            return True
         # A neighbour's number may have been taken without its sense.
-        return any(step is h.step for step, _, _ in j.entry.terms) and not (h.kind == "neighbour" and j.entry.kind == "sense")
+        taken = h.kind != "neighbour" or j.entry.kind != "sense"
+        return done_in(h, j.entry.plan) or (taken and any(step is h.step for step, _, _ in j.entry.terms))
 
     def shares_of(self, h: Hypothesis, lines: Sequence[int]) -> Floats:
         """What a discrete mistake makes of some numbers."""

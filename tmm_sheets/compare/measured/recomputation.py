@@ -118,7 +118,8 @@ class OwnNumbers:
         self._rows: dict[tuple[int, int], Any] = {}
         for j in self.judged:
             uncertain = [term for term in j.entry.terms if errors.error_at(*term[:2])]
-            if len(uncertain) == 1 and np.isfinite(j.tolerance) and not j.entry.is_way:
+            directed = j.entry.signed or abs(j.exact) > j.tolerance  # which way a vector without length points is not known
+            if len(uncertain) == 1 and np.isfinite(j.tolerance) and not j.entry.is_way and directed:
                 self._measured.setdefault(place_of(*uncertain[0][:2]), []).append(j)
 
     def value(self, j: JudgedValue) -> OwnValue | None:
