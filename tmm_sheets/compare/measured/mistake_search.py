@@ -68,12 +68,12 @@ def wrong_rows(evidence: Evidence, i: int) -> Iterator[tuple[Hypothesis, Explana
     for label in _next(labels, e.label):
         pairs = [(n, by_place[label, q]) for (at, q), n in by_place.items() if at == e.label and (label, q) in by_place]
         if len(pairs) > 1:
-            both = ", ".join(sorted((e.label, label), key=labels.index))
-            yield from _written(evidence, i, {x: y for a, b in pairs for x, y in ((a, b), (b, a))}, "positions", both)
+            yield from _written(evidence, i, {x: y for a, b in pairs for x, y in ((a, b), (b, a))}, "positions",
+                                ", ".join(sorted((e.label, label), key=labels.index)))
     down, lengths = (sorted(some, key=lambda n: judged[n].line.line) for some in (range(len(judged)), alike))
     for rows, words in ((along, "position"), (lengths, "row"), (down, "row")):
-        for by, which in ((-1, "before"), (1, "after")):
-            yield from _shifted(evidence, i, rows, by, f"{words} {which}")
+        for of, which in ((dict(pairwise(rows[::-1])), "before"), (dict(pairwise(rows)), "after")):
+            yield from _shifted(evidence, i, rows, of, f"{words} {which}")
 
 
 def _next(some: Sequence[T], one: T) -> list[T]:
@@ -82,21 +82,20 @@ def _next(some: Sequence[T], one: T) -> list[T]:
     return [*some[max(at - 1, 0):at], *some[at + 1:at + 2]]
 
 
-def _shifted(evidence: Evidence, i: int, rows: Sequence[int], by: int, words: str) -> Iterator[tuple[Hypothesis, Explanation]]:
-    """That the rows round a number have, as far as that goes, the numbers of those before them (-1) or after them (1)."""
-    of = dict((b, a) if by < 0 else (a, b) for a, b in pairwise(rows))
+def _shifted(evidence: Evidence, i: int, rows: Sequence[int], of: Mapping[int, int], words: str) -> Iterator[tuple[
+        Hypothesis, Explanation]]:
+    """That the rows round a number have, as far as that goes, the numbers of those before or after them."""
     for fits, block in groupby(rows, lambda n: n in of and _fits(evidence, n, of[n])):
         run = [*block]
         off = [k for k, n in enumerate(run) if _is_off(evidence, n)]
         # What is right where it stands has not been shifted.
         if fits and i in run and len(off) >= SEVERAL and off[0] <= run.index(i) <= off[-1]:
             run = run[off[0]:off[-1] + 1]
-            said = f"{evidence.judged[run[0]].row} … {evidence.judged[run[-1]].row}"
-            for h, found in _written(evidence, i, {n: of[n] for n in run}, words, said):
-                # Where the column was cut the number of a row that is not there came in.
-                cut = rows[rows.index(run[0 if by < 0 else -1]) + by]
-                if _is_off(evidence, cut):
-                    found.shares[cut] = evidence.left[cut]
+            # Where the column was cut the number of a row that is not there came in.
+            (cut,) = {of[n] for n in run} - {*run}
+            for h, found in _written(evidence, i, {n: of[n] for n in run}, words,
+                                     f"{evidence.judged[run[0]].row} … {evidence.judged[run[-1]].row}"):
+                found.shares[cut] = evidence.left[cut] if _is_off(evidence, cut) else found.shares[cut]
                 yield h, found
 
 
@@ -106,20 +105,17 @@ def _written(evidence: Evidence, i: int, of: Mapping[int, int], words: str, othe
     off = [n for n in of if _is_off(evidence, n)]
     if i in off and len(off) >= min(len(of), 2) and all(_fits(evidence, n, m) for n, m in of.items()):
         shares, doubt = np.zeros((2, len(evidence.judged)))
-        before = after = 0.0
         for n, m in of.items():
-            shares[n] = _meant(evidence, m) - _meant(evidence, n)
-            doubt[n] = evidence.allowed[m]
-            before += float(loss(evidence.left[n] / evidence.allowed[n]))
-            after += float(loss(_row_distance(evidence, n, m) / evidence.allowed[m]))
+            shares[n], doubt[n] = _meant(evidence, m) - _meant(evidence, n), evidence.allowed[m]
+        score = sum(float(loss(evidence.left[n] / evidence.allowed[n]) - loss(_row_distance(evidence, n, m) / evidence.allowed[m]))
+                    for n, m in of.items())
         h = Hypothesis("neighbour", words, evidence.judged[i].entry.terms[-1][0], (), other=Own(other))
-        yield h, Explanation((), shares, doubt, before - after)
+        yield h, Explanation((), shares, doubt, score)
 
 
 def _meant(evidence: Evidence, n: int) -> float:
     """The number that a row ought to have, with the mistakes found so far."""
-    j = evidence.judged[n]
-    return j.exact + j.deviation - float(evidence.left[n])
+    return evidence.judged[n].exact + evidence.judged[n].deviation - float(evidence.left[n])
 
 
 def _row_distance(evidence: Evidence, n: int, m: int) -> float:
@@ -368,7 +364,7 @@ def _in_one_plan(evidence: Evidence, i: int) -> Iterator[tuple[Hypothesis, Hypot
     plan = _seen_in(evidence.judged[i])
     here = [n for n, j in enumerate(evidence.judged) if j.entry.label == at.label and isfinite(j.tolerance)
             and (_seen_in(j) == plan or (plan in LOADS and j.entry.plan.startswith("force-")))]
-    if sum(abs(evidence.left[n]) > REACH * evidence.allowed[n] for n in here) < SEVERAL:
+    if sum(_is_off(evidence, n) for n in here) < SEVERAL:
         return
     for first, second in _pairs(evidence, i, here):
         both = _both(first, second)
