@@ -197,9 +197,9 @@ def hatching(state: Comparison) -> None:
     left_over[[r.piece for r in state.unclaimed()]] = True
     for n in numbers:
         state.inked.pop(n, None)
-        box = Box.around(state.elements[n].points, ASIDE).corners
+        box = Box.around(state.elements[n].points, ASIDE)
         strokes = np.flatnonzero(slanting & left_over & _inside(state.theirs.a, box) & _inside(state.theirs.b, box))
-        here = slanting & left_over & _inside(middles, Box.around(state.elements[n].points, 1.5).corners)
+        here = slanting & left_over & _inside(middles, Box.around(state.elements[n].points, 1.5))
         if _inside(patterns, box).any() or float(state.theirs.length[here].sum()) > 0.4 * state.whole(n) or \
                 float(state.theirs.length[strokes].sum()) > 0.8 * state.whole(n):
             state.found[n] = state.finding(n, 0.0, None)
@@ -209,6 +209,5 @@ def hatching(state: Comparison) -> None:
             state.found[n] = state.finding(n, 2 * state.tolerance, codes.NOT_HATCHED(), missing=True)
 
 
-def _inside(z: Points, box: Points) -> npt.NDArray[np.bool_]:
-    low, high = box[0], box[2]
-    return np.asarray((z.real > low.real) & (z.real < high.real) & (z.imag > low.imag) & (z.imag < high.imag))
+def _inside(z: Points, box: Box) -> npt.NDArray[np.bool_]:
+    return np.asarray((z.real > box.x0) & (z.real < box.x1) & (z.imag > box.y0) & (z.imag < box.y1))

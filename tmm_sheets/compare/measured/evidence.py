@@ -120,10 +120,8 @@ class JudgedValue:
 Floats = npt.NDArray[np.float64]
 CURVED = 0.05
 """Share of what a mistake explains that may be off: its displacement is not known better."""
-HUBER = 2.0
-"""Deviation in tolerances beyond which a number counts as spoilt rather than as scattered."""
 REACH = 2.0
-"""Tolerances beyond which a number is off, and that a mistake may leave of it."""
+"""Tolerances beyond which a number is off, spoilt rather than scattered, and that a mistake may leave of it."""
 CHANCES = 8
 """Drawings by chance that tell how uncertain a number has become."""
 SEVERAL = 3
@@ -310,7 +308,7 @@ def done_in(h: Hypothesis, plan: str) -> bool:
 def loss(r: Any) -> Any:
     """Huber's loss of what is beyond the tolerance: square, and straight for what is far off."""
     size = np.maximum(np.abs(r) - 1, 0)
-    return np.where(size <= HUBER, size**2, 2 * HUBER * size - HUBER**2)
+    return np.where(size <= REACH, size**2, 2 * REACH * size - REACH**2)
 
 
 def place_of(step: Step, k: int) -> Place:

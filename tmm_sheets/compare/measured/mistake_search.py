@@ -30,7 +30,6 @@ from tmm_sheets.compare.diagnosis.hypotheses import (
 )
 from tmm_sheets.compare.measured.evidence import (
     CURVED,
-    HUBER,
     LOADS,
     MOSTLY,
     REACH,
@@ -264,7 +263,7 @@ def _mistake(evidence: Evidence, place: Place, exact: bool = False) -> Mistake:
         score = float(np.sum(loss(aims)) - np.sum(loss(aims - shares)) - np.sum((usual @ x) ** 2))
         if score > best.score:
             best = Mistake(place, of, x, covariance(rows, usual), score, mu)
-        weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - shares) / HUBER))
+        weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - shares) / REACH))
         step, *_ = np.linalg.lstsq(np.concatenate((rows * weights[:, None], usual)),
                                    np.concatenate(((aims - shares) * weights, -usual @ x)), rcond=None)
         if np.abs(rows @ step).max() < 0.01:
