@@ -137,8 +137,7 @@ def load() -> None:
 
     from tmm_sheets.note import typst_writer
 
-    typst_writer.placed = lambda note: note
-    typst_writer.render = lambda note: (b"%PDF" if [*note.blocks()] else b"", {"pages": 1})
+    typst_writer.render = lambda note: (note, b"%PDF" if [*note.blocks()] else b"", {"pages": 1})
     for name in ("methods", "sheets", "drawing", "backends", "output", "record", "note", "compare.measured"):
         package = import_module(f"tmm_sheets.{name}")
         for module in walk_packages(package.__path__, f"{package.__name__}."):

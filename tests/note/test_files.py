@@ -53,7 +53,7 @@ def test_shaper_is_as_long_as_the_manuals_want(project, note):
     pytest.importorskip("typst")
     from tmm_sheets.note import typst_writer
 
-    data, places = typst_writer.render(typst_writer.placed(note))
+    _, data, places = typst_writer.render(note)
     assert 30 <= places["pages"] <= 48
     # Each has its page in the contents, of Word's file too: also the remarks on the manual, which have no number.
     assert len(places["headings"]) == sum(isinstance(b, Heading | Sheet) for b in note.blocks())
@@ -83,8 +83,7 @@ def test_the_short_way_of_frames_has_three_pages_and_two(cam):
     note = composed(opened("lugansk/cam_rocker"))
     front = sorted(note.front, key=lambda b: not isinstance(b, Contents))  # as 003 has it
     note = replace(note, front=tuple(front), frame=replace(note.frame, short=True))
-    note = typst_writer.placed(note)
-    data, places = typst_writer.render(note)
+    note, data, places = typst_writer.render(note)
     assert [n for n, text in enumerate(pages(data), 1) if note.frame.words["doc"] in text] == [2, 3, 4, cam.pages - 1, cam.pages]
     word = docx.Document(io.BytesIO(docx_writer.render(composing.counted(note, places["pages"]), places)))
     assert [len(s.footer.tables) for s in word.sections] == [0, 1, 1, 0, 1]
@@ -160,7 +159,7 @@ def test_the_command_waits_for_neither_package():
 
 @pytest.mark.parametrize(("right", "wrong", "told"), [
     ('"STIX Two Text"', '"Nosuch"', "unknown font family: nosuch"),
-    ("#let middle(b) =", "#let middle(b =", "unclosed delimiter"),
+    ("#let middle(b) =", "#let middle(b =", "failed to compile document: unclosed delimiter"),
 ])  # fmt: skip
 def test_a_wrong_preamble_is_told(note, tmp_path, monkeypatch, right, wrong, told):
     pytest.importorskip("typst")

@@ -17,8 +17,7 @@ def files(note):
     pytest.importorskip("docx")
     from tmm_sheets.note import composing, docx_writer, typst_writer
 
-    placed = typst_writer.placed(note)
-    data, places = typst_writer.render(placed)
+    placed, data, places = typst_writer.render(note)
     return data, docx_writer.render(composing.counted(placed, places["pages"]), places)
 
 
@@ -75,7 +74,7 @@ def test_long_names_stay_in_their_cells(note):
               "group": "М" * 40, "subject": "Тема " * 60}  # fmt: skip
     front = tuple(b for b in note.front if not isinstance(b, Figure | NumberedTable))
     short = replace(note, front=front, body=note.body[:2], frame=replace(note.frame, fields=note.frame.fields | fields))
-    document = pypdfium2.PdfDocument(typst_writer.render(short)[0])
+    document = pypdfium2.PdfDocument(typst_writer.render(short)[1])
     cells = {LONG[:12]: (37, 60, 5, 45), "ТММ.КП.": (85, 205, 5, 45), "ММММ": (155, 205, 5, 20), "Кафедра": (155, 205, 5, 20),
              "Тема": (85, 155, 5, 30)}  # fmt: skip
     seen = set()

@@ -73,23 +73,22 @@ def pinned(b: Block) -> bool:
     return isinstance(b, Contents | NewPage | Sheet) or (isinstance(b, Heading) and b.level == 1)
 
 
+def kind(b: Block) -> str:
+    """The kind of a block by which there is room above and below it; empty for what has a page of its own."""
+    kinds = {Paragraph: "paragraph", Formula: "formula", Where: "where", NumberedTable: "table", Figure: "figure"}
+    return ("section", "heading")[b.level - 1] if isinstance(b, Heading) else kinds.get(type(b), "")
+
+
 @dataclass(frozen=True)
 class Measured:
     """How high some blocks are, mm.
 
-    ``heights``: of text from the end of the block before to the beginning of the next, of a figure or table with the room above and
-    below it. ``room``: above and below by the kind of block; between two blocks there is the greater one, at the ends of a page
-    none.
+    ``heights``: of each without the room round it. ``room``: above and below by the kind of block; between two blocks there is the
+    greater one, at the ends of a page none.
     """
 
     heights: tuple[float, ...]
-    room: Mapping[str, tuple[float, float]]
-
-    def of(self, b: Block) -> tuple[float, float]:
-        """Room above and below a block."""
-        kinds = {Paragraph: "paragraph", Formula: "formula", Where: "where", NumberedTable: "table", Figure: "figure"}
-        kind = ("section", "heading")[b.level - 1] if isinstance(b, Heading) else kinds.get(type(b), "")
-        return self.room.get(kind, (0.0, 0.0))
+    room: Mapping[str, Sequence[float]]
 
 
 @dataclass(frozen=True)
@@ -117,16 +116,11 @@ def arranged(blocks: Sequence[Block], measured: Measured) -> list[Block]:
     """
     made: list[Block] = []
     section: list[tuple[Block, _Slice]] = []
-    following = [next((a for a in blocks[k + 1:] if not isinstance(a, Figure | NumberedTable)), None) for k in range(len(blocks))]
-    for b, after, height in [*zip(blocks, following, measured.heights, strict=True), (NewPage(), None, 0.0)]:
+    for b, height in [*zip(blocks, measured.heights, strict=True), (NewPage(), 0.0)]:
         if pinned(b):
             made += _section(section)
             section = []
-        above, below = measured.of(b)
-        if isinstance(b, Figure | NumberedTable):
-            height -= above + below
-        elif after is not None and not pinned(after):
-            height -= max(below, measured.of(after)[0])
+        above, below = measured.room.get(kind(b), (0.0, 0.0))
         section.append((b, _Slice(above, height, below)))
     return [*made, *(b for b, _ in section[:-1])]
 

@@ -59,8 +59,7 @@ def _typeset(project: Project, say: Callable[[str], None]) -> tuple[Note, bytes,
 
     note = composing.compose(project, say)
     say("pages")
-    note = typst_writer.placed(note)
-    data, places = typst_writer.render(note)
+    note, data, places = typst_writer.render(note)
     return composing.counted(note, int(places["pages"])), data, places
 
 

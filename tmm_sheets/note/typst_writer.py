@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -13,7 +12,7 @@ from typing import Any
 from tmm_sheets.construction.formula import spelt
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.note.alphabets import TYPST, characters, string
-from tmm_sheets.note.arranging import Measured, arranged, sticky
+from tmm_sheets.note.arranging import Measured, arranged, kind, sticky
 from tmm_sheets.note.document import (
     FRAMED,
     Block,
@@ -21,7 +20,6 @@ from tmm_sheets.note.document import (
     Figure,
     Formula,
     Heading,
-    NewPage,
     Note,
     NumberedTable,
     NumberInText,
@@ -34,12 +32,13 @@ from tmm_sheets.note.document import (
 from tmm_sheets.resources import template
 from tmm_sheets.words import both, tell
 
-BLANK, NOTHING = "blank.svg", b'<svg xmlns="http://www.w3.org/2000/svg" width="1mm" height="1mm"/>'
-"""A picture that stands for the others where only their size is asked for."""
 
+def render(note: Note) -> tuple[Note, bytes, dict[str, int]]:
+    """The note with its figures and tables where they stand best (see :mod:`~tmm_sheets.note.arranging`), its PDF, and the pages
+    there by number of the headings ("headings") and of all ("pages").
 
-def render(note: Note) -> tuple[bytes, dict[str, int]]:
-    """The PDF, and the pages by number of the headings ("toc-0" ...) and of all ("pages").
+    It is set twice: as it comes, which tells how high its blocks are, and arranged. What it reads from the same file and sets in
+    the same way, Typst sets only once: therefore the blocks have a file of their own.
 
     Raises
     ------
@@ -48,43 +47,46 @@ def render(note: Note) -> tuple[bytes, dict[str, int]]:
     """
     import json
 
-    pictures = {f"{b.file}.svg": b.svg for b in note.blocks() if isinstance(b, Figure | Sheet)}
-    with _compiler(source(note), pictures) as compiler:
-        made, warnings = compiler.compile_with_warnings(format="pdf", timestamp=0, pdf_tags=False)
-        for warning in warnings:
-            if "font" in warning.message:
-                raise BadInput(Problem(warning.message, str(_preamble())), hint=tell("fonts are read from {folders}").format(
-                    folders=both(_fonts())))
-        found = json.loads(compiler.query("<places>", field="value", one=True))
+    import typst  # note.check() has told it where it is missing
+
+    blocks = [*note.blocks()]
+    parts = [*map(_block, blocks, (*blocks[1:], None))]
+    known = {part: f"#blocks.at({k})" for k, part in enumerate(parts)}
+    files = {f"{b.file}.svg": b.svg for b in blocks if isinstance(b, Figure | Sheet)}
+    files |= {"preamble.typ": _preamble().read_bytes(),
+              "blocks.typ": "\n".join(('#import "preamble.typ": *\n#let blocks = (', *(f"[{x}]," for x in parts), ")")).encode()}
+    with TemporaryDirectory(prefix="tmm-note-") as folder:
+        for name, data in files.items():
+            (Path(folder) / name).write_bytes(data)
+
+        def compiler(source: str) -> Any:
+            path = Path(folder) / "note.typ"
+            path.write_text(source, encoding="utf-8")
+            return typst.Compiler(str(path), root=folder, font_paths=_fonts(), ignore_system_fonts=True)
+
+        try:
+            note = _arranged(note, json.loads(compiler(source(note, known, True)).query("<heights>", field="value", one=True)))
+            final = compiler(source(note, known))
+            made, warnings = final.compile_with_warnings(format="pdf", timestamp=0, pdf_tags=False)
+            found = json.loads(final.query("<places>", field="value", one=True))
+        except (typst.TypstError, RuntimeError) as e:
+            raise BadInput(Problem(str(e), str(_preamble()))) from None
+    for warning in warnings:
+        if "font" in warning.message:
+            raise BadInput(Problem(warning.message, str(_preamble())), hint=tell("fonts are read from {folders}").format(
+                folders=both(_fonts())))
     assert isinstance(made, bytes)
-    return made, found
+    return note, made, found
 
 
-def placed(note: Note) -> Note:
-    """The note with its figures and tables where they stand best, see :mod:`~tmm_sheets.note.arranging`.
+def _arranged(note: Note, found: dict[str, Any]) -> Note:
+    """The note with its figures and tables where they stand best, by the heights that were found."""
+    heights = iter(found["heights"])
 
-    Raises
-    ------
-    BadInput
-        as :func:`render`.
-    """
-    import json
+    def part(some: Sequence[Block]) -> tuple[Block, ...]:
+        return tuple(arranged(some, Measured(tuple(islice(heights, len(some))), found["room"])))
 
-    blocks = list(note.blocks())
-    order = sorted(range(len(blocks)), key=lambda k: isinstance(blocks[k], Figure | NumberedTable))
-    running = sum(not isinstance(b, Figure | NumberedTable) for b in blocks)
-    with _compiler(_measuring(note, [blocks[k] for k in order], running), {BLANK: NOTHING}) as compiler:
-        found = json.loads(compiler.query("<heights>", field="value", one=True))
-    heights = found["heights"]
-    del heights[running]  # where the running text ends
-    of_block = dict(zip(order, heights, strict=True))
-
-    def part(some: range) -> tuple[Block, ...]:
-        measured = Measured(tuple(of_block[k] for k in some), {kind: tuple(room) for kind, room in found["room"].items()})
-        return tuple(arranged([blocks[k] for k in some], measured))
-
-    n = len(note.front)
-    return replace(note, front=part(range(n)), body=part(range(n, len(blocks))))
+    return replace(note, front=part(note.front), body=part(note.body))
 
 
 def _preamble() -> Path:
@@ -93,23 +95,6 @@ def _preamble() -> Path:
 
 def _fonts() -> list[str]:
     return [str(template("note/fonts")), str(template("fonts"))]
-
-
-@contextmanager
-def _compiler(source: str, files: Mapping[str, bytes]) -> Iterator[Any]:
-    """Typst with a source and the files it names."""
-    import typst  # note.check() has told it where it is missing
-
-    with TemporaryDirectory(prefix="tmm-note-") as folder:
-        root = Path(folder)
-        for name, data in files.items():
-            (root / name).write_bytes(data)
-        (root / "preamble.typ").write_bytes(_preamble().read_bytes())
-        (root / "note.typ").write_text(source, encoding="utf-8")
-        try:
-            yield typst.Compiler(str(root / "note.typ"), root=str(root), font_paths=_fonts(), ignore_system_fonts=True)
-        except (typst.TypstError, RuntimeError) as e:
-            raise BadInput(Problem(str(e), str(_preamble()))) from None
 
 
 def rasters(blocks: Iterable[Block], dpi: float) -> dict[str, bytes]:
@@ -131,36 +116,28 @@ def rasters(blocks: Iterable[Block], dpi: float) -> dict[str, bytes]:
     return {b.file: data for b, data in zip(drawn, found, strict=True)}
 
 
-def source(note: Note) -> str:
-    """The Typst source of a note."""
+def source(note: Note, known: Mapping[str, str], measured: bool = False) -> str:
+    """The Typst source of a note; ``known``: what stands for a block by its own source; ``measured``: it tells how high all are."""
+    def written(blocks: Sequence[Block], measured: bool = False) -> str:
+        begins = (f"#begins({string(kind(b))})\n" if measured else "" for b in blocks)
+        parts = map(_block, blocks, (*blocks[1:], None))
+        return "\n".join(begin + known.get(part, part) for begin, part in zip(begins, parts, strict=True))
+
     fields = ", ".join(f"{string(k)}: {string(v)}" for k, v in (note.frame.fields | note.frame.words).items())
     framed = ", ".join(map(str, FRAMED)) if note.frame.short else ""
     return (
-        '#import "preamble.typ": *\n'
+        '#import "preamble.typ": *\n#import "blocks.typ": blocks\n'
         f"#show: note.with(lang: {string(note.language)}, title: {string(note.title)}, author: {string(note.author)}, "
         f"first: {note.first_page}, framed: ({framed}), words: ({fields or ':'}))\n"
-        f"#title-page({_titles(note)})\n{_written(note.front)}\n{_written(note.body)}\n#last-page()\n#places()\n"
-        + (f"#reminders[{_written(note.reminders)}]\n" if note.reminders else "")
+        f"#title-page({_titles(note)})\n{written(note.front, measured)}\n{written(note.body, measured)}\n#last-page()\n#places()\n"
+        + (f"#reminders[{written(note.reminders)}]\n" if note.reminders else "")
+        + ("#heights(blocks)\n" if measured else "")
     )
-
-
-def _measuring(note: Note, blocks: Sequence[Block], running: int) -> str:
-    """The source that tells how high blocks are, so many of them one after another; what has a page of its own has no height."""
-    written = [
-        "" if isinstance(b, Contents | NewPage | Sheet) else _block(b, after, BLANK) for b, after in pairwise([*blocks, None])
-    ]
-    parts = (f"({' '.join(f'[{x}],' for x in some)})" for some in (written[:running], written[running:]))
-    return f'#import "preamble.typ": *\n#heights({string(note.language)}, {_titles(note)}, {", ".join(parts)})\n'
 
 
 def _titles(note: Note) -> str:
     values = ((k, f"({', '.join(map(string, v))},)" if isinstance(v, list) else string(v)) for k, v in note.title_page.items())
     return "(" + ", ".join(f"{string(k)}: {value}" for k, value in values) + ")"
-
-
-def _written(blocks: Sequence[Block]) -> str:
-    """Blocks one after another."""
-    return "\n".join(_block(b, after) for b, after in pairwise([*blocks, None]) if b is not None)
 
 
 FITTING = 50
@@ -169,9 +146,9 @@ LOOKS = {"item": "item", "centre": "middle", "right": "aside"}
 """Functions of the preamble for paragraphs that are not plain."""
 
 
-def _block(b: Block | None, after: Block | None, file: str = "") -> str:
-    """One block; ``after`` comes next, which may have to stand on the same page; ``file`` is that of a figure if not its own."""
-    held = "true" if b is not None and after is not None and sticky(b, after) else "false"
+def _block(b: Block, after: Block | None) -> str:
+    """One block; ``after`` comes next, which may have to stand on the same page."""
+    held = "true" if after is not None and sticky(b, after) else "false"
     match b:
         case Heading():
             return f"#title({b.level}, {string(b.said)})"
@@ -192,7 +169,7 @@ def _block(b: Block | None, after: Block | None, file: str = "") -> str:
             return f"#grid-table({string(b.number)}, {string(b.title)}, {max(map(len, b.rows))}, ({' '.join(rows)}), {looks})"
         case Figure():
             size = f"{b.width:.2f}mm, {b.height:.2f}mm, {'true' if b.turned else 'false'}, {b.part if b.further else 'none'}"
-            return f"#picture({string(b.number)}, {string(b.title)}, {string(file or b.file + '.svg')}, {size})"
+            return f"#picture({string(b.number)}, {string(b.title)}, {string(b.file + '.svg')}, {size})"
         case Sheet():
             return f"#sheet({string(b.number)}, {string(b.title)}, {string(b.file + '.svg')})"
         case Contents():
