@@ -98,6 +98,7 @@ def test_another_question(asked, monkeypatch, what):
 @pytest.mark.parametrize("command", [
     ("record", "my.toml", "--sheet", "1", "--json", "-"), ("record", "my.toml", "--json", "r.json"),
     ("plot", "my.toml", "--plotter", "a1", "-o", "p"), ("compare", "my.toml", "--template", "-o", "t", "--json", "-"),
+    ("page", "my.toml", "-o", "p/page.html"),
 ])  # fmt: skip
 def test_the_same_is_given_again(asked, command):
     first = asked(*command)

@@ -25,12 +25,14 @@ from tmm_sheets.cli.options import (
     finish,
     folder_of,
     formats_of,
+    give,
     on_paper,
     open_project,
     plotter,
     put,
     read_variant,
     refuse,
+    repeatable,
     tell_all,
     title_names,
     titled,
@@ -355,12 +357,13 @@ def run_note(project: str, corrected: bool, formats: tuple[str, ...], output: Pa
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE",
         help="File of the page.  [default: out/<project>/page.html]")
 @NO_CACHE
+@repeatable
 def run_page(project: str, corrected: bool, sheets: tuple[int, ...], plan: str, output: Path | None) -> None:
     from tmm_sheets.living.page import page as living_page
     opened = open_project(project, corrected)
     found, problem = living_page(opened, opened.variant.chosen(sheets), plan)
     path = output if output is not None else folder_of(opened.variant, None) / "page.html"
-    files.write_all({path: found.encode()})
+    give({path: found.encode()})
     finish(opened.variant.called, [path], (), problem)
 
 

@@ -108,7 +108,7 @@ def _units(record: Mapping[str, Any]) -> dict[str, str]:
 
 def _written(record: Mapping[str, Any], made: MotionProgram | None) -> str:
     """The file: style, data and modules in their places of the template."""
-    packed = zlib.compress(json.dumps(record, ensure_ascii=False, separators=(",", ":")).encode(), 9)
+    packed = zlib.compress(json.dumps(record, ensure_ascii=False, separators=(",", ":")).encode())
     programs = ",\n".join(f"{name}: {one.source.text}" for name, one in (made.programs.items() if made is not None else ()))
     parts = {
         "lang": str(record["lang"]), "title": escape(", ".join(filter(None, (record["project"], record["variant"])))),
