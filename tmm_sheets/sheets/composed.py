@@ -79,7 +79,7 @@ class Composed:
     thing (arrows, lettering). ``leaving`` are the views that do not keep their places, ``frames`` say where each plan lies.
     ``symbols`` are the letters of the steps that left its marks, where they are not called by their names, by the path of the step.
     ``dead`` are the dead positions that its mechanism passes, ``left_out`` what there is no room for, ``illegible`` what is too
-    small.
+    small, ``names`` what its title block was filled in from.
     """
 
     drawing: Drawing
@@ -93,6 +93,7 @@ class Composed:
     dead: tuple[Remark, ...] = ()
     left_out: tuple[Remark, ...] = ()
     illegible: tuple[Remark, ...] = ()
+    names: str = ""
 
     @property
     def marks(self) -> tuple[Mark, ...]:
@@ -146,13 +147,15 @@ class Answered:
     """What is kept as a thing of some ``kind`` of sheet ``n`` (from 1) for every file that gives the same answers.
 
     Another length leaves the sheets of the gears as they are: what was asked of a file while something was made is what it
-    depends on, and on the program that made it.
+    depends on, and on the program that made it. What fills in the title block is no part of that, only how large it is: the same
+    views have it in another student's name.
     """
 
     def __init__(self, project: Project, n: int, kind: str) -> None:
         self.variant = project.variant
         self._about = fingerprint(kind, maker(), words.paper(), words.reader(), project.sheets[n - 1], str(n),
-                                  self.variant.project.name) if kept.folder() is not None and self.variant.content else ""
+                                  self.variant.project.name, self.variant.title_block.form) \
+            if kept.folder() is not None and self.variant.content else ""
         before = kept.read(self._about) if self._about else None
         self._known: list[Questions] = kept.taken(before, lambda tree: [tuple(map(tuple, questions)) for questions in tree]) or []
 
@@ -170,7 +173,7 @@ class Answered:
     def keep(self, data: bytes) -> None:
         """Keep what was made of the answers that have been asked for so far."""
         if self._about:
-            questions = self.variant.asked
+            questions = tuple(question for question in self.variant.asked if question != ("title_block",))
             kept.write(self._name(questions), data)
             if questions not in self._known:
                 kept.write(self._about, json.dumps([questions, *self._known][:WAYS]).encode())

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import accumulate, compress, pairwise
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -157,8 +158,11 @@ FRAME = "title block"
 KEYWORDS = (marked("TMM"), marked("theory of mechanisms and machines"), marked("course project"))
 
 
-def viewed(project: Project, n: int) -> tuple[Arrangement, Canvas, dict[str, str]]:
-    """Arrangement of sheet ``n``, its views on a canvas without the lettering that looks for places, texts of the title block."""
+def viewed(project: Project, n: int, before: Sequence[Part] = ()) -> tuple[Arrangement, Canvas, dict[str, str]]:
+    """Arrangement of sheet ``n``, its views on a canvas without the lettering that looks for places, texts of the title block.
+
+    ``before`` are the parts that it has, if it was drawn.
+    """
     plan = composition.arranged(project, n)
     if {"positions", "flywheel"} & {view.needs for view in plan.views}:
         function("kinematic_frames.check_number")(project)
@@ -170,7 +174,7 @@ def viewed(project: Project, n: int) -> tuple[Arrangement, Canvas, dict[str, str
         function(view.draw)(project, canvas, view.box, view.options)
     lower_titles(canvas)
     if plan.offers:
-        function("optional_views.draw")(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, composition.DESIGNATION))
+        function("optional_views.draw")(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, composition.DESIGNATION), before)
     if canvas.owed:
         function("moments.settle")(canvas)
     return plan, canvas, fields
@@ -182,23 +186,54 @@ def composed(project: Project, n: int) -> Composed:
     illegible = [*composition.crowded(project, [n])]
     if any(view.draw == "details.dense" for view in plan.offers):  # its letters look for no places yet
         illegible += function("details.unread")(project, n, canvas)
-    crowded = [*(Shortened(text, TITLE_BLOCK.centre, left) for text, left in canvas.shortened.items()), *place(canvas, INSIDE)]
+    crowded = [*_shortened(canvas), *place(canvas, INSIDE)]
     title = f"{fields['project']}. {fields['title']}"
-    drawing = Drawing(
-        WIDTH, HEIGHT, title, tuple(canvas.marks), project.variant.title_block.student or "tmm_sheets",
-        subject=" ".join(filter(None, (fields["designation"], fields["group"]))), keywords=", ".join(map(tr, KEYWORDS)),
-        views=views_of(canvas), dimensions=tuple(canvas.dimensions), forms=tuple(canvas.forms))
+    drawing = Drawing(WIDTH, HEIGHT, title, tuple(canvas.marks), *_about(fields), ", ".join(map(tr, KEYWORDS)), views_of(canvas),
+                      tuple(canvas.dimensions), tuple(canvas.forms))
     left = leaving(canvas, INSIDE, TITLE_BLOCK)
     project.shown.add(n)
     flat = function("diagrams.too_flat")(project) if "hodograph.bearing" in (view.draw for view in plan.offers) else ()
     return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
                     tuple(canvas.frames), _symbols(project, drawing), _dead(project, plan),
-                    (*composition.left_out(project, [n]), *flat), tuple(illegible))
+                    (*composition.left_out(project, [n]), *flat), tuple(illegible), repr(project.variant.title_block))
 
 
-def ask_again(project: Project, n: int) -> None:
-    """Ask a project for all that sheet ``n`` shows: the steps are made, lettering looks for no places."""
-    plan, *_ = viewed(project, n)
+def renamed(project: Project, n: int, made: Composed) -> Composed:
+    """Sheet ``n`` as it was made under other names, with the title block of its project."""
+    canvas = Canvas()
+    fields = _framed(project, n, canvas)
+    end = made.parts[1].first
+    by = len(canvas.marks) - end
+
+    def later(some: Any) -> Any:
+        """Numbers of marks, or what has some, after as many more in the title block."""
+        if isinstance(some, int):
+            return some + by if some >= end else some
+        if not hasattr(some, "_asdict"):
+            return some and tuple(map(later, some))
+        return some._replace(**{name: later(value) for name, value in some._asdict().items()
+                                if name in ("first", "end", "headed", "label", "spans")})
+
+    old, (author, subject) = made.drawing, _about(fields)
+    drawing = replace(old, marks=(*canvas.marks, *old.marks[end:]), author=author, subject=subject, views=later(old.views),
+                      dimensions=later(old.dimensions), forms=tuple(canvas.forms))
+    return replace(made, drawing=drawing, parts=later(made.parts), names=repr(project.variant.title_block),
+                   groups=(*canvas.groups, *later([group for group in made.groups if group.first >= end])),
+                   crowded=(*_shortened(canvas), *(one for one in made.crowded if not isinstance(one, Shortened))))
+
+
+def _about(fields: Mapping[str, str]) -> tuple[str, str]:
+    """Author and subject of a drawing."""
+    return fields["developed"] or "tmm_sheets", " ".join(filter(None, (fields["designation"], fields["group"])))
+
+
+def _shortened(canvas: Canvas) -> list[Shortened]:
+    return [Shortened(text, TITLE_BLOCK.centre, left) for text, left in canvas.shortened.items()]
+
+
+def ask_again(project: Project, n: int, before: Sequence[Part]) -> None:
+    """Ask a project for all that sheet ``n`` of these parts shows: the steps are made, nothing looks for its place."""
+    plan, *_ = viewed(project, n, before)
     project.shown.add(n)
     _ = _dead(project, plan), [*composition.left_out(project, [n])], [*composition.crowded(project, [n])]
 

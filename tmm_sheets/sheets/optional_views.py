@@ -45,37 +45,51 @@ APART = (12.0, 9.0, 6.0)
 """Distances from all else with which a place is looked for, mm: the widest first."""
 
 
-def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside: Box, closed: Sequence[Box]) -> None:
+def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside: Box, closed: Sequence[Box],
+         before: Sequence[Part] = ()) -> None:
     """Draw those of the offered views that find room ``inside`` the sheet, away from boxes ``closed`` to them.
 
     A view tells its sizes, from what it wants down to what it can do with, and perhaps what it belongs to: it stands near that or
-    nowhere, and those that do so choose first. The option ``left`` is the left edge that one would like best, mm.
+    nowhere, and those that do so choose first. The option ``left`` is the left edge that one would like best, mm. ``before`` are
+    the parts of the same sheet when it was drawn: what found room has it again.
     """
-    taken = cells_closed(inside, closed)
-    seen, forces = 0, _of_forces(canvas, inside)
-    whole, drawn = (cells_between(canvas, inside, lettering) for lettering in (True, False))
+    found = {part.draw: part.box for part in reversed(before[len(canvas.parts):])}
+    places = _Places(project, canvas, inside, closed) if not before else None
     for view, wanted in _wanted(project, canvas, offered):
-        for k in range(seen, len(canvas.parts)):
-            taken |= part_cells(canvas, k, inside)
-        seen = len(canvas.parts)
-        if view.kind.near:
-            spot, own, others = function(view.kind.near)(project, canvas, view.options)
-            box = place_nearest(taken, wanted, inside, spot, [_ink_box(canvas, k, inside) for k in (own, *others)])
-        else:
-            at = view.options.get("left")
-            # Nothing parts a loaded scheme from its force plans, and kinematics stand among the forces only where there is no other
-            # room. Beside a plan that is all but one line there is much of it from the title to the equation: no plan but a table
-            # may stand there.
-            stands = view.kind.stands
-            room = taken | (drawn if stands == "table" else whole)
-            first = (room | ~empty_cells(canvas, inside, closed, sides) for sides in LARGE) \
-                if stands in ("anywhere", "table") else iter([room | forces] if view.needs == "positions" else [])
-            box = next((box for part in chain(first, [room])
-                        if (box := place_farthest(part, wanted, inside, at)) is not None), None)
+        box = found.get(view.draw) if places is None else places.of(view, wanted)
         if box is not None:
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
             function(view.draw)(project, canvas, box, view.options)
+
+
+class _Places:
+    """Room that a sheet has left for one view after another."""
+
+    def __init__(self, project: Project, canvas: Canvas, inside: Box, closed: Sequence[Box]) -> None:
+        self.project, self.canvas, self.inside, self.closed = project, canvas, inside, closed
+        self.taken = cells_closed(inside, closed)
+        self.seen, self.forces = 0, _of_forces(canvas, inside)
+        self.whole, self.drawn = (cells_between(canvas, inside, lettering) for lettering in (True, False))
+
+    def of(self, view: ViewPlace, wanted: Sequence[tuple[float, float]]) -> Box | None:
+        """The place of a view, if there is one."""
+        canvas, inside, taken = self.canvas, self.inside, self.taken
+        for k in range(self.seen, len(canvas.parts)):
+            taken |= part_cells(canvas, k, inside)
+        self.seen = len(canvas.parts)
+        if view.kind.near:
+            spot, own, others = function(view.kind.near)(self.project, canvas, view.options)
+            return place_nearest(taken, wanted, inside, spot, [_ink_box(canvas, k, inside) for k in (own, *others)])
+        # Nothing parts a loaded scheme from its force plans, and kinematics stand among the forces only where there is no other
+        # room. Beside a plan that is all but one line there is much of it from the title to the equation: no plan but a table
+        # may stand there.
+        stands, at = view.kind.stands, view.options.get("left")
+        room = taken | (self.drawn if stands == "table" else self.whole)
+        first = (room | ~empty_cells(canvas, inside, self.closed, sides) for sides in LARGE) \
+            if stands in ("anywhere", "table") else iter([room | self.forces] if view.needs == "positions" else [])
+        return next((box for part in chain(first, [room])
+                     if (box := place_farthest(part, wanted, inside, at)) is not None), None)
 
 
 def _wanted(project: Project, canvas: Canvas, offered: Sequence[ViewPlace]) -> Iterator[tuple[ViewPlace, Any]]:

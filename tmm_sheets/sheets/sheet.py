@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -12,7 +12,7 @@ from tmm_sheets.sheets.composed import Answered, Composed, loaded, stored
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.drawing.canvas import Canvas
+    from tmm_sheets.drawing.canvas import Canvas, Part
     from tmm_sheets.project import Project
 
 T = TypeVar("T")
@@ -85,8 +85,12 @@ def composed(project: Project, n: int, steps: bool = False) -> Composed:
         found = loaded(data, Composed)
         if found is not None:
             if steps:
-                ask_again(project, n)
-            return found
+                ask_again(project, n, found.parts)
+            if found.names == repr(project.variant.title_block):
+                return found
+            from tmm_sheets.sheets import composing
+
+            return composing.renamed(project, n, found)
     from tmm_sheets.sheets import composing
 
     made = composing.composed(project, n)
@@ -94,9 +98,9 @@ def composed(project: Project, n: int, steps: bool = False) -> Composed:
     return made
 
 
-def ask_again(project: Project, n: int) -> None:
-    """Let the project make the steps of a sheet that was kept."""
+def ask_again(project: Project, n: int, parts: Sequence[Part]) -> None:
+    """Let the project make the steps of a sheet of these parts that was kept."""
     if n not in project.shown:
         from tmm_sheets.sheets import composing
 
-        composing.ask_again(project, n)
+        composing.ask_again(project, n, parts)
