@@ -355,8 +355,7 @@ def _hand_out(project: Project, folder: Path, force: bool, names: Mapping[str, s
     said, table = list[str](), title_entries.table(names)
     if force or not current(place, record_of(place), title_entries.FILE, fingerprint(table)):
         said += put(place, {title_entries.FILE: table.encode()}, force, fingerprint(table))[1]
-    for kind in KINDS:
-        name, make = KINDS[kind]
+    for kind, (name, make) in reversed(KINDS.items()):  # what the page asks for has all that the others ask for
         made_from = fingerprint(program(), words.paper(), words.reader(), project.variant.content, kind)
         # What somebody may have filled in stays whatever it was made from.
         if place.read(name) is not None if kind == "measured" else not force and current(place, record_of(place), name, made_from):
