@@ -160,10 +160,12 @@ def chord(centre: complex, radius: float, a: complex, b: complex) -> tuple[compl
 
 def polyline_inside(box: Box, points: Points) -> list[Points]:
     """Stretches of a polyline, complex (n,), inside the box; itself if it nowhere leaves it by more than rounding."""
-    x, y = points.real, points.imag
-    if not len(points) or x.max() < box.x0 or x.min() > box.x1 or y.max() < box.y0 or y.min() > box.y1:
+    if not len(points):
         return []
-    if all(box.contains(corner, ROUNDING) for corner in (complex(x.min(), y.min()), complex(x.max(), y.max()))):
+    x0, y0, x1, y1 = Box.around(points)
+    if x1 < box.x0 or x0 > box.x1 or y1 < box.y0 or y0 > box.y1:
+        return []
+    if box.contains(complex(x0, y0), ROUNDING) and box.contains(complex(x1, y1), ROUNDING):
         return [points]
     stretches: list[list[complex]] = []
     for a, b in pairwise(points.tolist()):

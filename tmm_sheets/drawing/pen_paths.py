@@ -133,7 +133,6 @@ def _rings(area: Any) -> Iterator[Points]:
 
 
 STEP = 0.025  # mm
-MAX_SWEEPS = 5  # through the order to shorten it
 MIN_GAIN_STEPS = 1.0  # plotter steps that a change of the order has to save
 Step = tuple[int, int]
 Path = tuple[Step, ...]
@@ -232,7 +231,7 @@ def _pen_lines(drawing: Drawing, plotter: Plotter, view: Box, shift: complex) ->
         pen = plotter.finest if stroke.filled else plotter.pen(stroke.width)
         for way in fill_passes(points, pen.width) if stroke.filled else line_passes(points, stroke.width, pen.width):
             parts = polyline_inside(reach, way)
-            lost += _length(way) - sum(map(_length, parts))
+            lost += 0.0 if [*map(id, parts)] == [id(way)] else _length(way) - sum(map(_length, parts))
             lines[pen] += [_steps(part) for part in parts]
     return lines, areas, strokes, lost
 
@@ -312,51 +311,57 @@ def _next(path: list[Step], at: dict[Step, list[int]], pieces: list[Path]) -> in
 def ordered(paths: list[Path], start: Step = (0, 0)) -> list[Path]:
     """Order paths for little travel from ``start``, reversing them where that helps.
 
-    Nearest end first, then stretches of the order are reversed as long as that saves travel (2-opt; Croes 1958).
+    Nearest end first, then stretches of the order are reversed as long as that saves travel (2-opt; Croes 1958): the stretch from
+    leap i to leap j, which then join their beginnings, and their ends. One of these two is nearer than the longer leap is wide:
+    all pairs that can save anything are among the ends so near to each other. Of those that save something the best are taken as
+    long as they keep out of each other's way, then it is looked again.
     """
+    import shapely
+
     if not paths:
         return []
-    starts, ends = (np.array([complex(*p[k]) for p in paths]) for k in (0, -1))
-    order, turned = _greedy_order(starts, ends, complex(*start))
-    first, last = np.where(turned, ends, starts)[order], np.where(turned, starts, ends)[order]
-    turned = turned[order]
-    leap = np.append(np.abs(first[1:] - last[:-1]), 0.0)  # from the end of each path to the next one
-    for _ in range(MAX_SWEEPS):
-        better = False
-        for i in range(len(order)):
-            before = last[i - 1] if i else complex(*start)
-            reached = abs(first[i] - before)
-            if 2 * reached <= MIN_GAIN_STEPS:  # no reversal gains more than twice the travel to its beginning
-                continue
-            # Reversing i .. j joins the path before i to the end of j, and the beginning of i to the path after j.
-            gain = leap[i:] - np.abs(last[i:] - before)
-            gain[:-1] -= np.abs(first[i + 1 :] - first[i])
-            j = i + int(np.argmax(gain))
-            if reached + gain[j - i] > MIN_GAIN_STEPS:
-                part = slice(i, j + 1)
-                first[part], last[part] = last[part][::-1].copy(), first[part][::-1].copy()
-                order[part], turned[part] = order[part][::-1].copy(), ~turned[part][::-1]
-                leap[i:j] = leap[i:j][::-1].copy()
-                leap[j] = abs(first[j + 1] - last[j]) if j + 1 < len(order) else 0.0
-                if i:
-                    leap[i - 1] = abs(first[i] - before)
-                better = True
-        if not better:
-            break
-    return [paths[k][::-1] if back else paths[k] for k, back in zip(order.tolist(), turned.tolist(), strict=True)]
+    # A path k has the ends k and n + k; the pen is at the one before the last, and goes nowhere when all is drawn.
+    n, z = len(paths), np.array([*(complex(*path[k]) for k in (0, -1) for path in paths), complex(*start), np.nan])
+    first = _greedy_order(z)
+    points = shapely.points(z[:-1].real, z[:-1].imag)
+    tree = shapely.STRtree(points)
+    at, begins, wide, near = np.zeros(2 * n + 2, int), np.zeros(2 * n + 2, bool), np.full(2 * n + 2, -1.0), np.zeros((2, 0), int)
+    while True:
+        leaps = np.array([[2 * n, *(first + n) % (2 * n)], [*first, 2 * n + 1]])  # from the end of each path to the next one
+        tails, heads = z[leaps]
+        leap = np.nan_to_num(np.abs(tails - heads))
+        at[leaps], begins[leaps], before = np.arange(n + 1), [[False], [True]], wide.copy()
+        wide[leaps] = leap
+        other = (wide != before)[:-1]
+        asked = np.flatnonzero(other & (2 * wide[:-1] > MIN_GAIN_STEPS))  # no reversal gains more than twice its longer leap
+        ends, beside = tree.query(points[asked], "dwithin", wide[asked])
+        near = np.hstack((near[:, ~other[near[0]]], (asked[ends], beside)))
+        i, j = np.sort(at[near[:, begins[near[0]] == begins[near[1]]]], axis=0)
+        gain = leap[i] + leap[j] - np.abs(tails[i] - tails[j]) - np.where(j < n, np.abs(heads[i] - heads[j]), 0.0)
+        best = np.flatnonzero((i < j) & (gain > MIN_GAIN_STEPS))
+        best = best[np.argsort(-gain[best], kind="stable")]
+        within, stretches = np.zeros(n + 1, int), []  # of each leap: the stretch it lies in, -1 at the ends of one
+        for a, b in zip(i[best].tolist(), j[best].tolist(), strict=True):
+            if within[a] == within[b] >= 0:
+                stretches.append((b - a, a, b))
+                inner = within[a + 1:b]
+                inner[inner == within[a]] = len(stretches)
+                within[[a, b]] = -1
+        if not stretches:
+            return [paths[k] if k < n else paths[k - n][::-1] for k in first.tolist()]
+        for _, a, b in sorted(stretches):  # a stretch within another one first
+            first[a:b] = (first[a:b][::-1] + n) % (2 * n)
 
 
-def _greedy_order(starts: Points, ends: Points, place: complex) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
-    """Greedy order of paths, indices (n,), each with an end nearest to where the last stopped; (n,) True where reversed."""
-    n, both = len(starts), np.concatenate((starts, ends))
-    turned, order = np.zeros(n, dtype=bool), np.zeros(n, dtype=np.int64)
-    for done in range(n):
-        j = int(np.argmin(np.abs(both - place)))
-        k = j % n
-        order[done], turned[k] = k, j >= n
-        place = complex(starts[k] if turned[k] else ends[k])
-        both[[k, k + n]] = np.inf
-    return order, turned
+def _greedy_order(z: Points) -> npt.NDArray[np.int64]:
+    """The ends with which paths begin in greedy order, each nearest to where the last one stopped; see :func:`ordered`."""
+    n, place, first = len(z) // 2 - 1, complex(z[-2]), []
+    left = z[:-2].astype(np.complex64)  # plotter steps are whole numbers
+    for _ in range(n):
+        first.append(k := int(np.argmin(np.abs(left - place))))
+        left[k % n::n] = np.inf
+        place = complex(z[(k + n) % (2 * n)])
+    return np.array(first)
 
 
 def _steps(points: Points) -> Path:
