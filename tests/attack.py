@@ -55,7 +55,7 @@ from tmm_sheets.output import build_store, roster
 from tmm_sheets.page import doors as page_doors, jobs as page_jobs
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
-from tmm_sheets.sheets.composed import Composed
+from tmm_sheets.sheets.composed import Composed, loaded
 from tmm_sheets.task import messages, variant
 
 CAM = "lugansk/cam_flat"
@@ -126,7 +126,7 @@ def cam():
 @cache
 def measured():
     """What can be measured on its sheets."""
-    return measurables(cam(), lambda what: None)
+    return measurables(cam())
 
 
 @cache
@@ -427,7 +427,7 @@ DOORS = {
     "DXF": lambda rng: cad_file.read(put("dxf", "x.dxf", rng)),
     "images": lambda rng: photograph.read(picture(rng)),
     "PDF": lambda rng: photograph.read(put("pdf", "x.pdf", rng, spoiled_pdf)),
-    "kept drawings": lambda rng: sheet.loaded(cut(whole("kept"), rng), Composed),
+    "kept drawings": lambda rng: loaded(cut(whole("kept"), rng), Composed),
     "page": lambda rng: rng.choice([page_jobs.check, page_jobs.project])(asked(rng), print),
     "server": lambda rng: (page_doors.place_of_file(edited("Группа 1/Іванов/sheet1.dxf", rng), rng.random() < 0.5)),
     **{kind: partial(around, fault) for kind, fault in FAULTS.items()},

@@ -151,7 +151,7 @@ def _steps(file, drawing):
         yield "record", lambda: recording.record(project, (1,))
         yield "protocol", lambda: "\n".join(protocols.lines(project, None))
         if len(file) < 2500:
-            yield "template", lambda: measurables(project, lambda _: None)
+            yield "template", lambda: measurables(project)
 
 
 REFUSED = "refused"

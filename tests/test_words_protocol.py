@@ -67,7 +67,7 @@ def test_names_ids_and_numbers_are_the_same_in_every_language(other):
         with words.on_paper(language):
             project = Project(catalogue.read("tests/projects/feeder.toml"))
             record, _ = recording.record(project)
-            entries = collecting.measurables(project, lambda what: None).entries
+            entries = collecting.measurables(project).entries
             solved = "".join(json_pieces(results.assemble(project, None)))
             found[language] = ([plan["steps"] for plan in record["plans"]], sorted(record["steps"]), sorted(record["rules"]),
                                record["results"], list(entries), [e.value for e in entries.values()], solved)

@@ -463,7 +463,7 @@ class Opened:
         """
         from tmm_sheets.compare.measured import measured_lengths
 
-        report = measured_lengths.template(self.project, Path(folder), everything, lambda what: None)
+        report = measured_lengths.template(self.project, Path(folder), everything)
         made = {Path(folder) / name: data for name, data in report.files.items()}
         files.write_all(made)
         return next(iter(made))

@@ -184,7 +184,7 @@ def opened(project: str) -> Measurables:
 
 def measured(project: Project) -> Measurables:
     """What can be measured of a project; the error analysis is the same for all its students."""
-    found = measurables(project, lambda what: None)
+    found = measurables(project)
     errors, kept = found.errors, {}
 
     def once(factors: Mapping[str, float], pencil: float, reading: float) -> error.Errors:

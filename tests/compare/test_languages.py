@@ -54,7 +54,7 @@ def drawings(spoiled, tmp_path_factory):
     @cache
     def of(kind):
         if kind == "measured":
-            numbers = {e.id: e.value for e in measurables(Project(read(PROJECT)), lambda what: None).entries.values()}
+            numbers = {e.id: e.value for e in measurables(Project(read(PROJECT))).entries.values()}
             rows = [f"{name};{1.3 * value if k == 4 else value:.5g}" for k, (name, value) in enumerate(numbers.items())]
             (folder / "measured.csv").write_text("\n".join(("id;measured", *rows, "")), encoding="utf-8")
             return "--measured", folder / "measured.csv"
@@ -129,7 +129,7 @@ def test_words_and_signs_are_the_readers(report, kind, language):
 @each
 def test_nothing_russian_is_left_in_english_but_what_stands_on_the_sheet(report, sheet, kind):
     _, out, err, _ = report(kind, "en")
-    found = measurables(Project(read(PROJECT)), lambda what: None)
+    found = measurables(Project(read(PROJECT)))
     names = {view.name for view in sheet.drawing.views} | {m.text for m in sheet.drawing.marks if hasattr(m, "text")}
     names |= {e.title for e in found.entries.values()} | {e.quantity for e in found.entries.values()}
     said = out + err

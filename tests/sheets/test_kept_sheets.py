@@ -60,7 +60,7 @@ def same(a, b):
 def test_it_is_the_sheet_itself(name, n):
     with kept.unused():
         made = sheet.composed(opened(name), n)
-    found = sheet.loaded(sheet.stored(made), Composed)
+    found = composed.loaded(sheet.stored(made), Composed)
     assert same(made, found)
     for form in ("dxf", "pdf", "svg"):
         writer = import_module(f"tmm_sheets.backends.{form}")
@@ -142,15 +142,15 @@ def test_what_is_warned_of_is_kept(place, tmp_path, capsys):
 @pytest.mark.parametrize("data", [
     b"", b"\0\0\0\2{}", b"\xff" * 40, *map(pickle.dumps, (None, {}, Remark("a"), subprocess.call, np.memmap, Path("a")))])
 def test_other_bytes_are_no_sheet(data):
-    assert sheet.loaded(data, Composed) is None
+    assert composed.loaded(data, Composed) is None
 
 
 def test_a_sheet_cut_short_is_none():
     data = sheet.stored(sheet.composed(opened("sixbar/8:3"), 1))
-    assert sheet.loaded(data, Composed) is not None
+    assert composed.loaded(data, Composed) is not None
     for end in (10, len(data) // 3, len(data) // 2, len(data) - 16, len(data) - 8, len(data) - 1):
-        assert sheet.loaded(data[:end], Composed) is None
-    assert sheet.loaded(data + bytes(16), Composed) is None
+        assert composed.loaded(data[:end], Composed) is None
+    assert composed.loaded(data + bytes(16), Composed) is None
 
 
 def test_only_the_same_answers_find_what_was_kept(place, monkeypatch):

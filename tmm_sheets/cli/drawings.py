@@ -89,7 +89,7 @@ def run_compare(
         if template:
             from tmm_sheets.compare.measured import measured_lengths as by_ruler
 
-            report = by_ruler.template(opened, folder, everything, progress.doing)
+            report = by_ruler.template(opened, folder, everything)
         elif group is not None:
             from tmm_sheets.api import compared
 

@@ -159,6 +159,10 @@ class Answered:
         before = kept.read(self._about) if self._about else None
         self._known: list[Questions] = kept.taken(before, lambda tree: [tuple(map(tuple, questions)) for questions in tree]) or []
 
+    def read(self, kind: type[T]) -> T | None:
+        """What is kept of a kind for the same answers."""
+        return next((found for data in self.found() if (found := loaded(data, kind)) is not None), None)
+
     def found(self) -> Iterator[bytes]:
         """The bytes kept for the same answers, those of the latest questions first; these count as asked of the file."""
         for questions in self._known:

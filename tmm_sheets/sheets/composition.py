@@ -31,7 +31,7 @@ from tmm_sheets.sheets.border_solver import (
     risen,
     solve,
 )
-from tmm_sheets.sheets.composed import Answered, loaded, stored
+from tmm_sheets.sheets.composed import Answered, stored
 from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.views import Arrangement, ViewKind, ViewPlace, arrangement, function
 from tmm_sheets.words import Remark, marked
@@ -62,9 +62,8 @@ def arranged(project: Project, n: int) -> Arrangement:
 def _arranged(project: Project, n: int) -> Arrangement:
     plan = _with_all_groups(project, arrangement(project.sheets[n - 1]).fitted(project.parts))
     before = Answered(project, n, "arrangement")
-    for data in before.found():
-        if (views := loaded(data, tuple)) is not None:
-            return replace(plan, views=views)
+    if (views := before.read(tuple)) is not None:
+        return replace(plan, views=views)
     if any(view.needs == "forces" for view in plan.views):
         project.check_forces()
     if any("axis" in view.options for view in plan.views):

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from tmm_sheets.errors import CannotBuild, together
-from tmm_sheets.sheets.composed import Answered, Composed, loaded, stored
+from tmm_sheets.sheets.composed import Answered, Composed, stored
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -38,12 +38,19 @@ def attempt(project: Project, numbers: Iterable[int], around: Callable[[int], Ab
     return _attempt(project, numbers, around, lambda project, n: composed(project, n, steps))
 
 
-def views(project: Project) -> Attempt[Canvas]:
-    """The views of every sheet on a canvas, without the lettering that looks for its places."""
-    from tmm_sheets.sheets import composing
+def views(project: Project, steps: bool = True) -> Attempt[Composed | Canvas]:
+    """The views of every sheet on a canvas, without the lettering that looks for its places.
 
-    numbers = range(1, len(project.variant.drawable()) + 1)
-    return _attempt(project, numbers, nullcontext, lambda project, n: composing.viewed(project, n)[1])
+    Without ``steps``, or where they are made, a sheet that was kept will do.
+    """
+    def drawn(project: Project, n: int) -> Composed | Canvas:
+        if (not steps or n in project.shown) and (found := Answered(project, n, "sheet").read(Composed)) is not None:
+            return found
+        from tmm_sheets.sheets import composing
+
+        return composing.viewed(project, n)[1]
+
+    return _attempt(project, range(1, len(project.variant.drawable()) + 1), nullcontext, drawn)
 
 
 def _attempt(project: Project, numbers: Iterable[int], around: Callable[[int], AbstractContextManager[Any]],
@@ -81,16 +88,14 @@ def composed(project: Project, n: int, steps: bool = False) -> Composed:
     project asks for ``steps``, and the views ask the project for what they show, whether or not they are drawn.
     """
     before = Answered(project, n, "sheet")
-    for data in before.found():
-        found = loaded(data, Composed)
-        if found is not None:
-            if steps:
-                ask_again(project, n, found.parts)
-            if found.names == repr(project.variant.title_block):
-                return found
-            from tmm_sheets.sheets import composing
+    if (found := before.read(Composed)) is not None:
+        if steps:
+            ask_again(project, n, found.parts)
+        if found.names == repr(project.variant.title_block):
+            return found
+        from tmm_sheets.sheets import composing
 
-            return composing.renamed(project, n, found)
+        return composing.renamed(project, n, found)
     from tmm_sheets.sheets import composing
 
     made = composing.composed(project, n)

@@ -282,7 +282,7 @@ def test_two_digit_links_in_everything_a_user_reads(two_cylinders):
     true = radial_truth(radial, radial.force_index)
     reactions = results.assemble(radial, ("forces",))["forces"]["reactions"]
     told = "\n".join(protocols.lines(radial, None))
-    entries = measurables(radial, lambda what: None).entries
+    entries = measurables(radial).entries
     drawn = " ".join(group.text for group in sheet.composed(radial, 1).groups)
     for name in ("F10,1", "F11,0"):
         assert complex(*reactions[name][0]) == pytest.approx(true.reactions[name], rel=1e-9)

@@ -317,17 +317,20 @@ def _times(z: Any, by: tuple[float, float], kind: Kind) -> Any:
     return made / np.abs(made) if kind == "direction" else made
 
 
-def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
+def measurables(project: Project, judged: bool = True) -> Measurables:
     """Everything on the sheets of a project that can be measured, and its results.
 
-    The views of its sheets decide on the scale factors and on the positions that are shown; letters need no places for that.
+    The views of its sheets decide on the scale factors and on the positions that are shown; letters need no places for that. Where
+    nothing is ``judged`` no steps are needed but those that numbers are read off: sheets that were kept tell all the rest.
     """
     from tmm_sheets.sheets import sheet
     from tmm_sheets.sheets.linkage import kinematic_frames
 
     found = Measurables()
     shown: set[str] = set()
-    attempt = sheet.every(project, say, steps=True) if project.shown else sheet.views(project)
+    there = project.parts
+    # How far its pole is, the view of the speeds of wheels tells their plan.
+    attempt = sheet.views(project, steps=judged or "reducer" in there or "train" in there)
     problem = attempt.problem()
     if problem is not None:
         if not attempt.drawn:
@@ -340,7 +343,6 @@ def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
         if "velocities" in drawn.scales:  # what has a factor of its own is not asked for: errors are reckoned with one
             own = kinematic_frames.factors_of(drawn.frames, project.study.velocities.plan).items()
             shown -= {f"velocity plan {project.cycle.labels[i]}" for i, mu in own if mu != drawn.scales["velocities"].mu}
-    there = project.parts
     if "positions" in there:
         linkage_items.collect(project, found, shown)
         diagrams(project, found)

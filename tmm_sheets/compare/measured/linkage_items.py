@@ -57,6 +57,8 @@ LAID_OFF = (rules.LAY_OFF, rules.ALONG)
 def collect(project: Project, found: Measurables, shown: set[str]) -> None:
     """Lengths and angles of the plans that the sheets show (``shown``: names of the elements drawn), and their results."""
     study, cycle, force = project.study, project.cycle, project.force_index
+    # Where loads act are points of the position plan.
+    loaded = "forces" in project.parts and any(fp.plan.name in found.scales for fp in study.forces.plans.values())
     drawn = [i for i, _ in cycle.drawn]
     of_velocities = [i for i, label in cycle.drawn if {f"velocity plan {label}", f"velocity plan {cycle.labels[i]}"} & shown]
     plans = ((study.positions.plan, drawn), (study.velocities.plan, of_velocities), (study.accelerations.plan, [force]))
@@ -69,7 +71,7 @@ def collect(project: Project, found: Measurables, shown: set[str]) -> None:
                 # Of many plans alike the one that accelerations and forces are drawn for is asked for in full.
                 found.add(entry if k == force or plan.pole is None else replace(
                     entry, main=entry.kind == "length" and entry.head is not None and entry.head.rule is LINE_LINE))
-    if "forces" in project.parts and any(fp.plan.name in found.scales for fp in study.forces.plans.values()):
+    if loaded:
         _forces(project, found)
     _motion_results(project, found, of_velocities)
 

@@ -89,7 +89,7 @@ NAME = "measured.csv"
 """File name of the template."""
 
 
-def template(project: Project, folder: Path, everything: bool, say: Callable[[str], None]) -> Report:
+def template(project: Project, folder: Path, everything: bool) -> Report:
     """A CSV file with a line for each main number of the sheets, or for ``everything`` that can be measured on them.
 
     Raises
@@ -98,7 +98,7 @@ def template(project: Project, folder: Path, everything: bool, say: Callable[[st
         when the folder has such a file already that somebody has changed: it may be filled in.
     """
     path = folder / NAME
-    found = measurables(project, say)
+    found = measurables(project, judged=False)
     called = project.variant.called
     data = measured_file.template(called, found, everything)
     if os.path.exists(path) and path.read_bytes() != data:
@@ -117,13 +117,13 @@ def template(project: Project, folder: Path, everything: bool, say: Callable[[st
 
 def table(project: Project) -> bytes:
     """The template of all main numbers as bytes, without a message."""
-    return measured_file.template(project.variant.called, measurables(project, lambda what: None))
+    return measured_file.template(project.variant.called, measurables(project, judged=False))
 
 
 def compare(project: Project, path: Path, pencil: float, reading: float, say: Callable[[str], None]) -> Report:
     """Judge the numbers of a filled file."""
     measured_file.text_of(path, project)  # one that cannot be read is refused before any work is done for it
-    found = measurables(project, say)
+    found = measurables(project)
     filled = measured_file.read(path, project, found)
     say(tell("errors"))
     judged = judge(filled, found, pencil, reading)
