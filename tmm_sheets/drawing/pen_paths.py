@@ -185,22 +185,16 @@ def plan(drawing: Drawing, plotter: Plotter, window: Box | None = None) -> PenPl
     shift = complex(-view.x0, -view.y0) - (complex(width, height) / 2 if plotter.origin == "centre" else 0)
     lines, areas, strokes, lost = _pen_lines(drawing, plotter, view, shift)
     order = plotter.pens or tuple(sorted({*lines, *areas}, key=lambda pen: pen.width))
-    layers, before, after, drawn, doubled, place = [], 0.0, 0.0, 0.0, 0.0, (0, 0)
-    last = (0, 0)
+    layers, place = list[Layer](), (0, 0)
     for pen in order:
-        if not lines[pen] and not areas[pen]:
-            continue
-        before += raised_travel(lines[pen], last)
-        last = lines[pen][-1][-1] if lines[pen] else last
-        single = list(drop_retraced(lines[pen]))
-        paths = ordered(join_segments(single), place)
-        after += raised_travel(paths, place)
-        place = paths[-1][-1] if paths else place
-        ink_once = sum(map(_path_length, single))
-        doubled += sum(map(_path_length, lines[pen])) - ink_once
-        drawn += ink_once
-        layers.append(Layer(pen, tuple(paths), tuple(areas[pen])))
-    return PenPlan(plotter, width, height, tuple(layers), strokes, STEP * drawn, STEP * before, STEP * after, STEP * doubled,
+        if lines[pen] or areas[pen]:
+            paths = ordered(join_segments(drop_retraced(lines[pen])), place)
+            place = paths[-1][-1] if paths else place
+            layers.append(Layer(pen, tuple(paths), tuple(areas[pen])))
+    as_drawn, as_plotted = [p for pen in order for p in lines[pen]], [p for layer in layers for p in layer.paths]
+    drawn = sum(map(_path_length, as_plotted))
+    return PenPlan(plotter, width, height, tuple(layers), strokes, STEP * drawn, STEP * raised_travel(as_drawn),
+                   STEP * raised_travel(as_plotted), STEP * (sum(map(_path_length, as_drawn)) - drawn),
                    lost if window is None else 0.0)  # fmt: skip
 
 
@@ -379,7 +373,6 @@ def _path_length(path: Path) -> float:
     return sum(dist(a, b) for a, b in pairwise(path))
 
 
-def raised_travel(paths: Iterable[Path], start: Step) -> float:
+def raised_travel(paths: list[Path], start: Step = (0, 0)) -> float:
     """Travel of the raised pen, plotter steps."""
-    some = list(paths)
-    return sum(dist(place, path[0]) for place, path in zip([start, *(path[-1] for path in some)], some, strict=False))
+    return sum(dist(place, path[0]) for place, path in zip([start, *(path[-1] for path in paths)], paths, strict=False))
