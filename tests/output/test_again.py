@@ -43,6 +43,14 @@ def test_another_folder_has_the_same(asked):
     assert content("a") == content("c")
 
 
+def test_another_file_has_the_same(asked):
+    """A record, whatever its file is called; to standard output it is another question."""
+    assert asked("record", "my.toml", "--json", "a.json") == (0, "", "", True)
+    assert asked("record", "my.toml", "--json", "b.json") == (0, "", "", False)
+    assert Path("a.json").read_bytes() == Path("b.json").read_bytes()
+    assert asked("record", "my.toml", "--json", "-")[1:] == (Path("a.json").read_text(encoding="utf-8"), "", True)
+
+
 def test_what_was_changed_by_hand_stays(asked):
     for folder in "ab":
         asked(*BUILD, "-o", folder)

@@ -136,14 +136,20 @@ def give(said: object, err: bool = False) -> None:
 
 
 def repeatable(command: Callable[..., None]) -> Callable[..., None]:
-    """Decorator of a command: what it gave is given again, see :mod:`~.again`, unless a file is there that says something else."""
+    """Decorator of a command: what it gave is given again, see :mod:`~.again`, unless a file is there that says something else.
+
+    Where a command writes one file, and tells nothing of it, it does not matter which one was asked for before.
+    """
     @wraps(command)
     def run(project: str, **asked: Any) -> None:
         from tmm_sheets.cli import again
         from tmm_sheets.output.build_store import Folder
 
-        name, here = again.question(project, about := {**asked, TITLE: entered()}), Folder(Path())
-        known = again.found(name) or ()
+        one = asked["target"] if asked.get("target") not in (None, "-") and "output" not in asked else None
+        about = {**asked, TITLE: entered()} | ({"target": "a file"} if one else {})
+        name, here = again.question(project, about), Folder(Path())
+        known = [(dict(zip([one], said.values(), strict=True)) if one and isinstance(said, dict) else said, err)
+                 for said, err in again.found(name) or ()]
         made = (file for said, _ in known if isinstance(said, dict) for file in said.items())
         if known and all(here.read(path) in (None, data) for path, data in made):
             for said, err in known:
