@@ -259,22 +259,22 @@ def drop_retraced(paths: Iterable[Path]) -> Iterator[Path]:
 
 def join_segments(pieces: Iterable[Path]) -> list[Path]:
     """Join straight segments to paths, straight on where several meet."""
-    pieces = list(pieces)
-    at: dict[Step, list[int]] = defaultdict(list)
-    for i, piece in enumerate(pieces):
-        if len(piece) == 2:
-            at[piece[0]].append(i)
-            at[piece[1]].append(i)
-    out: list[Path] = [piece for piece in pieces if len(piece) == 1]
+    at, out = defaultdict[Step, list[Step]](list), list[Path]()
+    for piece in pieces:
+        if len(piece) == 1:
+            out.append(piece)
+        for a, b in pairwise(piece):
+            at[a].append(b)
+            at[b].append(a)
 
     def follow(place: Step) -> None:
-        path = [place]
-        while (i := _next(path, at, pieces)) is not None:
-            a, b = pieces[i]
-            path.append(b if path[-1] == a else a)
-            at[path[-2]].remove(i)
-            at[path[-1]].remove(i)
-        out.append(tuple(path))
+        path = [place, place]
+        while here := at[path[-1]]:
+            (u, v), (x, y) = path[-2:]
+            path.append(max(here, key=lambda p: ((x - u) * (p[0] - x) + (y - v) * (p[1] - y)) / hypot(p[0] - x, p[1] - y)))
+            here.remove(path[-1])
+            at[path[-1]].remove((x, y))
+        out.append(tuple(path[1:]))
 
     # A path that begins where an odd number of pieces meet ends at another such place; what is left then is closed.
     for place, here in at.items():
@@ -284,22 +284,6 @@ def join_segments(pieces: Iterable[Path]) -> list[Path]:
         while here:
             follow(place)
     return out
-
-
-def _next(path: list[Step], at: dict[Step, list[int]], pieces: list[Path]) -> int | None:
-    """Index of the undrawn segment at the end of the path that turns least; None if there is none."""
-    x, y = path[-1]
-    candidates = at[x, y]
-    if len(candidates) < 2 or len(path) < 2:
-        return candidates[0] if candidates else None
-    dx, dy = x - path[-2][0], y - path[-2][1]
-
-    def straight(i: int) -> float:
-        a, b = pieces[i]
-        px, py = b if a == (x, y) else a
-        return (dx * (px - x) + dy * (py - y)) / hypot(px - x, py - y)
-
-    return max(candidates, key=straight)
 
 
 def ordered(paths: list[Path], start: Step = (0, 0)) -> list[Path]:
