@@ -375,7 +375,7 @@ def known_sheet(project: Project, n: int) -> KnownSheet:
 
 def plans_of(project: Project, known: KnownSheet) -> dict[str, Plan]:
     """The plans of a project that was asked for all that a sheet shows, by their names."""
-    ask_again(project, known.n, known.sheet.parts)
+    ask_again(project, known.n, known.sheet)
     return {plan.name: plan for some in project.plans.values() for plan in (some or {}).values()}
 
 

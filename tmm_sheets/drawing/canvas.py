@@ -189,6 +189,7 @@ class Canvas(ScaleBook):
     inked : cells of ink by part, cached while views are added: earlier marks do not change
     corners : dense corners by the number of plans placed, cached likewise
     owed : equations that found no room under their figures, and the places of these
+    offered : places of the views for which room was looked for, None where there was none
     """
 
     marks: list[Mark] = field(default_factory=list)
@@ -207,6 +208,7 @@ class Canvas(ScaleBook):
     inked: dict[Any, npt.NDArray[np.bool_]] = field(default_factory=dict)
     corners: dict[int, list[Any]] = field(default_factory=dict)
     owed: dict[str, Box] = field(default_factory=dict)
+    offered: list[Box | None] = field(default_factory=list)
 
     def begin(self, box: Box, title: str = "", draw: str = "") -> None:
         """Begin a view, or without ``draw`` a part of the current one with a box of its own."""

@@ -79,7 +79,8 @@ class Composed:
     thing (arrows, lettering). ``leaving`` are the views that do not keep their places, ``frames`` say where each plan lies.
     ``symbols`` are the letters of the steps that left its marks, where they are not called by their names, by the path of the step.
     ``dead`` are the dead positions that its mechanism passes, ``left_out`` what there is no room for, ``illegible`` what is too
-    small, ``names`` what its title block was filled in from.
+    small, ``names`` what its title block was filled in from; ``offered`` the places of the views for which room was looked for,
+    None where there was none.
     """
 
     drawing: Drawing
@@ -94,6 +95,7 @@ class Composed:
     left_out: tuple[Remark, ...] = ()
     illegible: tuple[Remark, ...] = ()
     names: str = ""
+    offered: tuple[Box | None, ...] = ()
 
     @property
     def marks(self) -> tuple[Mark, ...]:

@@ -158,10 +158,10 @@ FRAME = "title block"
 KEYWORDS = (marked("TMM"), marked("theory of mechanisms and machines"), marked("course project"))
 
 
-def viewed(project: Project, n: int, before: Sequence[Part] = ()) -> tuple[Arrangement, Canvas, dict[str, str]]:
+def viewed(project: Project, n: int, offered: Sequence[Box | None] = ()) -> tuple[Arrangement, Canvas, dict[str, str]]:
     """Arrangement of sheet ``n``, its views on a canvas without the lettering that looks for places, texts of the title block.
 
-    ``before`` are the parts that it has, if it was drawn.
+    Where the views ``offered`` found their places before, nobody looks again.
     """
     plan = composition.arranged(project, n)
     if {"positions", "flywheel"} & {view.needs for view in plan.views}:
@@ -174,7 +174,7 @@ def viewed(project: Project, n: int, before: Sequence[Part] = ()) -> tuple[Arran
         function(view.draw)(project, canvas, view.box, view.options)
     lower_titles(canvas)
     if plan.offers:
-        function("optional_views.draw")(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, composition.DESIGNATION), before)
+        function("optional_views.draw")(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, composition.DESIGNATION), offered)
     if canvas.owed:
         function("moments.settle")(canvas)
     return plan, canvas, fields
@@ -195,7 +195,8 @@ def composed(project: Project, n: int) -> Composed:
     flat = function("diagrams.too_flat")(project) if "hodograph.bearing" in (view.draw for view in plan.offers) else ()
     return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
                     tuple(canvas.frames), _symbols(project, drawing), _dead(project, plan),
-                    (*composition.left_out(project, [n]), *flat), tuple(illegible), repr(project.variant.title_block))
+                    (*composition.left_out(project, [n]), *flat), tuple(illegible), repr(project.variant.title_block),
+                    tuple(canvas.offered))
 
 
 def renamed(project: Project, n: int, made: Composed) -> Composed:
@@ -231,9 +232,9 @@ def _shortened(canvas: Canvas) -> list[Shortened]:
     return [Shortened(text, TITLE_BLOCK.centre, left) for text, left in canvas.shortened.items()]
 
 
-def ask_again(project: Project, n: int, before: Sequence[Part]) -> None:
-    """Ask a project for all that sheet ``n`` of these parts shows: the steps are made, nothing looks for its place."""
-    plan, *_ = viewed(project, n, before)
+def ask_again(project: Project, n: int, offered: Sequence[Box | None]) -> None:
+    """Ask a project for all that sheet ``n`` shows: the steps are made, nothing looks for its place."""
+    plan, *_ = viewed(project, n, offered)
     project.shown.add(n)
     _ = _dead(project, plan), [*composition.left_out(project, [n])], [*composition.crowded(project, [n])]
 

@@ -46,61 +46,59 @@ APART = (12.0, 9.0, 6.0)
 
 
 def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside: Box, closed: Sequence[Box],
-         before: Sequence[Part] = ()) -> None:
+         known: Sequence[Box | None] = ()) -> None:
     """Draw those of the offered views that find room ``inside`` the sheet, away from boxes ``closed`` to them.
 
     A view tells its sizes, from what it wants down to what it can do with, and perhaps what it belongs to: it stands near that or
-    nowhere, and those that do so choose first. The option ``left`` is the left edge that one would like best, mm. ``before`` are
-    the parts of the same sheet when it was drawn: what found room has it again.
+    nowhere, and those that do so choose first. The option ``left`` is the left edge that one would like best, mm. Where the places
+    are ``known`` from an earlier time, in the same order, none is looked for.
     """
-    found = {part.draw: part.box for part in reversed(before[len(canvas.parts):])}
-    places = _Places(project, canvas, inside, closed) if not before else None
-    for view, wanted in _wanted(project, canvas, offered):
-        box = found.get(view.draw) if places is None else places.of(view, wanted)
+    views = _wanted(project, canvas, offered)
+    found = ((view, box) for (view, *_), box in zip(views, known, strict=True)) if known else _placed(canvas, views, inside, closed)
+    for view, box in found:
+        canvas.offered.append(box)
         if box is not None:
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
             function(view.draw)(project, canvas, box, view.options)
 
 
-class _Places:
-    """Room that a sheet has left for one view after another."""
-
-    def __init__(self, project: Project, canvas: Canvas, inside: Box, closed: Sequence[Box]) -> None:
-        self.project, self.canvas, self.inside, self.closed = project, canvas, inside, closed
-        self.taken = cells_closed(inside, closed)
-        self.seen, self.forces = 0, _of_forces(canvas, inside)
-        self.whole, self.drawn = (cells_between(canvas, inside, lettering) for lettering in (True, False))
-
-    def of(self, view: ViewPlace, wanted: Sequence[tuple[float, float]]) -> Box | None:
-        """The place of a view, if there is one."""
-        canvas, inside, taken = self.canvas, self.inside, self.taken
-        for k in range(self.seen, len(canvas.parts)):
-            taken |= part_cells(canvas, k, inside)
-        self.seen = len(canvas.parts)
-        if view.kind.near:
-            spot, own, others = function(view.kind.near)(self.project, canvas, view.options)
-            return place_nearest(taken, wanted, inside, spot, [_ink_box(canvas, k, inside) for k in (own, *others)])
-        # Nothing parts a loaded scheme from its force plans, and kinematics stand among the forces only where there is no other
-        # room. Beside a plan that is all but one line there is much of it from the title to the equation: no plan but a table
-        # may stand there.
-        stands, at = view.kind.stands, view.options.get("left")
-        room = taken | (self.drawn if stands == "table" else self.whole)
-        first = (room | ~empty_cells(canvas, inside, self.closed, sides) for sides in LARGE) \
-            if stands in ("anywhere", "table") else iter([room | self.forces] if view.needs == "positions" else [])
-        return next((box for part in chain(first, [room])
-                     if (box := place_farthest(part, wanted, inside, at)) is not None), None)
-
-
-def _wanted(project: Project, canvas: Canvas, offered: Sequence[ViewPlace]) -> Iterator[tuple[ViewPlace, Any]]:
-    """The views that have something to show, with their sizes; those first that belong to another: details before tables."""
+def _wanted(project: Project, canvas: Canvas, offered: Sequence[ViewPlace]) -> Iterator[tuple[ViewPlace, Any, Any]]:
+    """The views that have something to show, with their sizes and what they belong to; those first that belong to another."""
     for view in sorted(offered, key=lambda view: not view.kind.near):
         try:
             wanted = function(view.kind.sizes)(project, canvas, view.options)
         except CannotBuild:
             continue  # what it shows cannot be had; the views that need it have said so
         if wanted:
-            yield view, wanted
+            yield view, wanted, view.kind.near and function(view.kind.near)(project, canvas, view.options)
+
+
+def _placed(canvas: Canvas, views: Iterator[tuple[ViewPlace, Any, Any]], inside: Box,
+            closed: Sequence[Box]) -> Iterator[tuple[ViewPlace, Box | None]]:
+    """The views with the places there are for them; each is drawn before the next one is asked for."""
+    taken = cells_closed(inside, closed)
+    seen, forces = 0, _of_forces(canvas, inside)
+    whole, drawn = (cells_between(canvas, inside, lettering) for lettering in (True, False))
+    for view, wanted, near in views:
+        for k in range(seen, len(canvas.parts)):
+            taken |= part_cells(canvas, k, inside)
+        seen = len(canvas.parts)
+        if near:
+            spot, own, others = near
+            box = place_nearest(taken, wanted, inside, spot, [_ink_box(canvas, k, inside) for k in (own, *others)])
+        else:
+            at = view.options.get("left")
+            # Nothing parts a loaded scheme from its force plans, and kinematics stand among the forces only where there is no other
+            # room. Beside a plan that is all but one line there is much of it from the title to the equation: no plan but a table
+            # may stand there.
+            stands = view.kind.stands
+            room = taken | (drawn if stands == "table" else whole)
+            first = (room | ~empty_cells(canvas, inside, closed, sides) for sides in LARGE) \
+                if stands in ("anywhere", "table") else iter([room | forces] if view.needs == "positions" else [])
+            box = next((box for part in chain(first, [room])
+                        if (box := place_farthest(part, wanted, inside, at)) is not None), None)
+        yield view, box
 
 
 def empty_cells(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float, float]) -> Taken:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -12,7 +12,7 @@ from tmm_sheets.sheets.composed import Answered, Composed, stored
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.drawing.canvas import Canvas, Part
+    from tmm_sheets.drawing.canvas import Canvas
     from tmm_sheets.project import Project
 
 T = TypeVar("T")
@@ -44,11 +44,12 @@ def views(project: Project, steps: bool = True) -> Attempt[Composed | Canvas]:
     Without ``steps``, or where they are made, a sheet that was kept will do.
     """
     def drawn(project: Project, n: int) -> Composed | Canvas:
-        if (not steps or n in project.shown) and (found := Answered(project, n, "sheet").read(Composed)) is not None:
+        found = Answered(project, n, "sheet").read(Composed)
+        if found is not None and (not steps or n in project.shown):
             return found
         from tmm_sheets.sheets import composing
 
-        return composing.viewed(project, n)[1]
+        return composing.viewed(project, n, found.offered if found is not None else ())[1]
 
     return _attempt(project, range(1, len(project.variant.drawable()) + 1), nullcontext, drawn)
 
@@ -90,7 +91,7 @@ def composed(project: Project, n: int, steps: bool = False) -> Composed:
     before = Answered(project, n, "sheet")
     if (found := before.read(Composed)) is not None:
         if steps:
-            ask_again(project, n, found.parts)
+            ask_again(project, n, found)
         if found.names == repr(project.variant.title_block):
             return found
         from tmm_sheets.sheets import composing
@@ -103,9 +104,9 @@ def composed(project: Project, n: int, steps: bool = False) -> Composed:
     return made
 
 
-def ask_again(project: Project, n: int, parts: Sequence[Part]) -> None:
-    """Let the project make the steps of a sheet of these parts that was kept."""
+def ask_again(project: Project, n: int, kept: Composed) -> None:
+    """Let the project make the steps of a sheet that was ``kept``."""
     if n not in project.shown:
         from tmm_sheets.sheets import composing
 
-        composing.ask_again(project, n, parts)
+        composing.ask_again(project, n, kept.offered)
