@@ -29,7 +29,7 @@ import numpy as np
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.lost_ink import Mask, at
 from tmm_sheets.compare.photo.own_place import ALONG_STEP
-from tmm_sheets.compare.photo.profiles import pixels, sample
+from tmm_sheets.compare.photo.profiles import HALF, LARGELY, LITTLE, MOSTLY, NEARLY_ALL, NOTHING, WHOLE, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
 from tmm_sheets.compare.photo.traces import ELSEWHERE, END_STEP, STEP, Head, InkTrace, Owners
 from tmm_sheets.drawing.styles import line_type
@@ -51,36 +51,19 @@ SIZES = ((1.0, 1.0), (0.85, 1.0), (0.7, 1.0), (1.0, 0.7), (0.7, 0.7))
 """Length and width of heads drawn by hand by those of the drawing."""
 BESIDE = 0.22
 """mm from the edge of the line beyond which nothing of others may be: what runs along under it, a helper line, is no matter."""
-BROAD = 0.8
-"""Width of a line as a share of that of a head from which on it may hide the head."""
-ALL_ALONG, THICKER, THICKEST = 0.9, 0.2, 0.5
-"""Least share of a line along which a thicker one, a link, must run under it to be taken for its own ink, mm by which it is thicker
-at least, in steps of pixels, and half of how thick it is at most."""
-ALONG = 0.3
-"""Least share of a line along which others must run under it for their ink to be part of its own."""
+THICKEST = 0.5
+"""mm; half of how thick a link at most is that runs under all of a line and is taken for its own ink."""
 NEXT = 15.0
 """mm of a line behind its head by which its own ink is known: a hand presses here more than there, and wavers."""
 SOME = 6
 """Least number of places along a line by which its ink is known."""
 FAINT = 0.12
 """Darkness as a share of the line's own up to which there is no ink."""
-SEEN, WHOLE = 0.3, 0.8
-"""Least part of a head that must be seen for it to be known, and for it to be known as a whole."""
-HAS, LIKE = 0.45, 0.6
-"""How much ink there must be of a head, as a share of what it has by the drawing, and how alike theirs must be, 1 when the same."""
-SURELY, VERY_LIKE, ALONE = 0.5, 0.85, 0.75
-"""Both for a head at the other end, where none is expected; likeness of one that is seen as a whole where no others begin."""
-SCANT, HALF = 0.1, 0.5
-"""Part of a head up to which what is seen of a side of it says nothing, and part that a whole side of it is."""
-SIDE = WHOLE * HALF
+HAS, ALONE, BARE = 0.45, 0.75, 0.2
+"""Least share of a head that tells of one in its place; how alike ink must be to one at the other end that is seen as a whole where
+no others begin; share up to which there is none in its place, nor one a little off or smaller."""
+SIDE = LARGELY * HALF
 """Least part of a head that must be seen of one side for that to be known as a whole."""
-WRITTEN = 0.85
-"""How alike ink must be to a whole head where letters may stand."""
-BARE, LITTLE, HARDLY_LIKE, OPEN, EACH = 0.2, 0.2, 0.6, 0.45, 0.1
-"""Share up to which there is no head in its place, share and likeness from which on there may be one a little off or smaller, and
-least part of it that must be seen in its place for it to be missed, of all of it and of each of its sides."""
-NOTHING = 0.1
-"""Share up to which nothing of a head is on a side of its place."""
 ON_LINE = 0.998
 """Cosine of the angle up to which another arrow lies on the same line."""
 TOGETHER = 1.5
@@ -90,8 +73,6 @@ ENOUGH, NEAREST = 3, 9
 taken: where the picture is small, all lines are paler."""
 CENTRED = 0.45
 """mm from the middle of a line within which the middle of its stroke is."""
-LINED = 0.9
-"""Least share of the way to the tip on which the line must be seen for its head to be missed."""
 
 
 class _Likeness(NamedTuple):
@@ -159,11 +140,11 @@ class _End:
         both = float((wanted[told] * dark).sum()) / np.sqrt(weight * max(float((dark**2).sum()), 1e-9))
         return _Likeness(weight / whole, float((wanted[told] * ink).sum()) / weight, both)
 
-    def has_head(self, share: float = HAS, alike: float = LIKE, part: float = SEEN) -> bool:
+    def has_head(self, share: float = HAS, alike: float = MOSTLY, part: float = LITTLE) -> bool:
         """Whether there is a head in its place."""
         written = self.written()
         return any(h.part >= part and h.share >= share and h.alike >= alike for h in self.likeness(NEAR, SIZES)) or any(
-            h.part >= WHOLE and h.share >= SURELY and h.alike >= WRITTEN for h in written.likeness(NEAR, SIZES))
+            h.part >= LARGELY and h.share >= HALF and h.alike >= NEARLY_ALL for h in written.likeness(NEAR, SIZES))
 
     def written(self) -> _End:
         """It, if there are no letters."""
@@ -171,8 +152,8 @@ class _End:
 
     def has_whole_head(self) -> bool:
         """Whether all of the place of a head is seen, and one is there where none is expected."""
-        seen = next(self.likeness(NEAR, SIZES)).part >= WHOLE
-        return seen and self.has_head(SURELY, VERY_LIKE, WHOLE)
+        seen = next(self.likeness(NEAR, SIZES)).part >= LARGELY
+        return seen and self.has_head(HALF, NEARLY_ALL, LARGELY)
 
     def sides(self) -> list[_Likeness]:
         """The likeness of either side to that of a head in its place."""
@@ -185,19 +166,19 @@ class _End:
     def bare(self) -> bool:
         """Whether nothing of a head is in its place, as far as that is seen."""
         here = next(self.likeness(NEAR, SIZES))
-        return here.part > SCANT and here.share <= BARE
+        return here.part > NOTHING and here.share <= BARE
 
     def headless(self) -> bool:
         """Whether the line goes on to its tip and has no head in its place, nor a little off it, nor a small one."""
-        if self.lined < LINED or not self.bare():
+        if self.lined < WHOLE or not self.bare():
             return False
         sides = self.sides()
         # A head may lie a little aside, on the side that others hide, but not so far that all of the other side is bare.
         half = any(s.part >= SIDE and s.share <= NOTHING for s in sides)
-        if not half and (sum(s.part for s in sides) < OPEN or min(s.part for s in sides) < EACH):
+        if not half and (sum(s.part for s in sides) < HAS or min(s.part for s in sides) < NOTHING):
             return False
         looked = chain(self.likeness(NEAR, SIZES), self.likeness(FARTHER, SIZES[:1]))
-        return not any(h.part >= SEEN and h.share >= LITTLE and h.alike >= HARDLY_LIKE for h in looked)
+        return not any(h.part >= LITTLE and h.share >= BARE and h.alike >= MOSTLY for h in looked)
 
 
 @dataclass(frozen=True)
@@ -221,10 +202,10 @@ class Paper:
         ink, others, letters, hidden = self._beside(e, tip, way, shaft)
         left, right = _run_under(others, line_type(e.style).width / 2)
         # In steps of pixels a line that lies under all of it shows beside it here and there.
-        covered = bool(others[:, MIDDLE].any(1).mean() > ALL_ALONG)
+        covered = bool(others[:, MIDDLE].any(1).mean() > WHOLE)
         about = BESIDE + covered * STEP
         close = np.abs(ASIDE - (right - left) / 2) <= (left + right) / 2 + about
-        under = close & ((others.mean(0) > ALONG) | covered)
+        under = close & ((others.mean(0) > LITTLE) | covered)
         free = ~_widened(others & ~close)
         own = _usual(ink, free & ~hidden & ~letters)
         if own is None:
@@ -236,7 +217,7 @@ class Paper:
         low = float(ASIDE[~inked & (ASIDE < 0)].max(initial=-np.inf))
         high = float(ASIDE[~inked & (ASIDE >= 0)].min(initial=np.inf))
         # With paper to both sides, or it is others' ink that begins there.
-        if np.isfinite(high - low) and high - low - STEP >= BROAD * 2 * _half_width(e):
+        if np.isfinite(high - low) and high - low - STEP >= LARGELY * 2 * _half_width(e):
             return None
         way_to_tip = (back >= 2 * END_STEP) & (back <= head + 2 * SHAFT)
         lined = float((ink[way_to_tip][:, MIDDLE].max(1) > 0.5 * dark).mean())
@@ -276,9 +257,9 @@ def _run_under(others: Any, pen: float) -> tuple[float, float]:
     """How far to its left and right a thicker line lies under all of a line, mm, or its own width, ``pen`` to either side: it may
     lie aside of the middle of a link.
     """
-    bare = others.mean(0) < ALL_ALONG
+    bare = others.mean(0) < WHOLE
     left, right = (float(np.abs(ASIDE[bare & side]).min(initial=np.inf)) - 1.5 * STEP for side in (ASIDE <= 0, ASIDE >= 0))
-    return (max(left, pen), max(right, pen)) if 2 * pen + THICKER < left + right <= 2 * THICKEST else (pen, pen)
+    return (max(left, pen), max(right, pen)) if 2 * pen + 2 * STEP < left + right <= 2 * THICKEST else (pen, pen)
 
 
 def _widened(others: Any) -> Any:
@@ -382,12 +363,12 @@ def _head(t: InkTrace, paper: Paper) -> Head:
     if has and alone:
         return "there"
     # The less is seen of the tip, the more must be seen of the other end.
-    if bare and there.has_head(SURELY, VERY_LIKE, SEEN if part >= SEEN else HALF):
+    if bare and there.has_head(HALF, NEARLY_ALL, LITTLE if part >= LITTLE else HALF):
         return "reversed"
     # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
-    if here.lined >= LINED and not paper.others_begin(t.element, begin, way) and there.has_head(SURELY, ALONE, WHOLE):
+    if here.lined >= WHOLE and not paper.others_begin(t.element, begin, way) and there.has_head(HALF, ALONE, LARGELY):
         return "reversed"
-    if not alone and next(there.likeness(NEAR, SIZES)).part >= SIDE and there.has_head(SURELY, VERY_LIKE, SIDE):
+    if not alone and next(there.likeness(NEAR, SIZES)).part >= SIDE and there.has_head(HALF, NEARLY_ALL, SIDE):
         return "doubled"
     return "there" if has else "absent" if here.headless() else "unknown"
 
@@ -402,8 +383,8 @@ SPARED, THIN_LEAST, PIECE = 1.5, 2.4, 5
 """mm at its ends that dots hide, least mm of it that must be seen by itself, and places that are taken together."""
 NARROW = 0.62
 """Ink across it, as a share of that usual for the vectors about it, up to which it is a thin line."""
-UNIFORM, THIN_MOSTLY = 0.75, 0.85
-"""Ink across it up to which a piece of it is no vector's, and least share of it where that is so."""
+UNIFORM = 0.75
+"""The same up to which a piece of it is no vector's."""
 
 
 class _Stroke(NamedTuple):
@@ -463,5 +444,5 @@ def _thin(s: _Stroke, others: Sequence[_Stroke]) -> bool:
         return False
     about = sorted(others, key=lambda o: abs(o.element.middle - s.element.middle))[:NEAREST]
     usual = float(np.median([o.usual for o in about]))
-    uniform = (s.across <= UNIFORM * usual).mean() >= THIN_MOSTLY
+    uniform = (s.across <= UNIFORM * usual).mean() >= NEARLY_ALL
     return bool(s.usual <= NARROW * usual and uniform)

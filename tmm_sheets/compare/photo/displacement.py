@@ -10,13 +10,11 @@ import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.profiles import SCALE, fit, peaks, pixels, regions, sample, window
+from tmm_sheets.compare.photo.profiles import HALF, LARGELY, MOSTLY, NEARLY_ALL, SCALE, fit, peaks, pixels, regions, sample, window
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.traces import (
-    ENOUGH,
     FARTHEST_OFF,
     LEAST,
-    NEARLY_ALL,
     ONE_POINT,
     PALE,
     STEP,
@@ -30,7 +28,6 @@ from tmm_sheets.compare.photo.traces import (
 )
 from tmm_sheets.drawing.marks import Points
 
-THERE = 0.8  # share of its ink in its own place from which on an element is not sought elsewhere
 TRIES = 500  # guesses from stations picked at random
 KNOWN, PARTED = 0.4, 0.12
 """Least share of a line that must be seen for it to be known elsewhere; of one that parts from a stroke only its end is seen."""
@@ -40,8 +37,7 @@ DARKER, FULLER = 1.25, 0.12
 """How much darker or more complete an element must be elsewhere for it not to be believed in its own place."""
 SURE, PIVOT = 0.95, 0.8
 """Of a line that was turned, little of which is seen: least share of its ink, mm by which the end is off that stays."""
-EDGE, HALF = 0.4, 0.5
-"""mm to either side of a line within which others' ink may be taken for its own, and share of its length that may be so."""
+EDGE = 0.4  # mm to either side of a line within which others' ink may be taken for its own
 RIDGE = 1.0  # mm beyond such a line within which there is paper again
 BROAD = 1.6
 """mm to either side of a line within which what belongs to its stroke is told by the ink."""
@@ -78,7 +74,7 @@ def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, owners: 
     about = np.abs(offsets) <= 0.5
     near = s.points[:, None] + s.normals[:, None] * offsets[about]
     here = smoothed(sample(ink, at[:, about]), owners.others(e.number, near)) > level
-    if here[:, np.abs(offsets[about]) <= 0.2].any(1).mean() > THERE * expected:
+    if here[:, np.abs(offsets[about]) <= 0.2].any(1).mean() > LARGELY * expected:
         # There is ink where it belongs, only it cannot be told from others'.
         return InkTrace(e, "dense", covered=float(here.any(1).mean()), at=e.points)
     profile, unknown = smoothed(sample(left, at)), sample(wiped, at) > 100
@@ -206,7 +202,7 @@ def _best_displaced(e: Element, s: Stations, profile: Any, unknown: Any, offsets
     able = seen.sum(1) >= max(min(least * n, PLENTY / step), min(4.0 / step, n))
     score = np.where(able, share + SEEN * hits / n - 0.01 * worst, -1.0)
     best = int(score.argmax())
-    if score[best] <= 0 or share[best] <= ENOUGH * expected:
+    if score[best] <= 0 or share[best] <= MOSTLY * expected:
         return None
     y = x[best]
     for loose in (0.5, 0.3):
@@ -269,9 +265,9 @@ STRAIGHT = 0.4
 FOLD, FAINTER, EVERY = 0.25, 3.0, 8
 """Least darkness of a crease, as a share of ink's, on three quarters of its length, how much darker than that ink on it is, and the
 distance of the pixels that are looked at."""
-RIM, ALL = 0.8, 0.8
-"""mm to a side within which something was wiped out along a strip one coarse pixel wide, and the least share of the strip, for it
-to be the rim of that: a line is wider."""
+RIM = 0.8
+"""mm to a side within which something was wiped out along a strip one coarse pixel wide, for it to be the rim of that: a line is
+wider."""
 
 
 def extra_ink(left: Any, level: float, words: Any, wiped: Any) -> list[ExtraInk]:
@@ -312,7 +308,7 @@ def _rim(x: ExtraInk, wiped: Any) -> bool:
         return False
     aside = RIM * (1j if x.height < x.width else 1)
     beside = [sample(wiped, pixels(x.points + by), nearest=True) > 0 for by in (aside / 2, aside, -aside / 2, -aside)]
-    return bool(np.maximum(np.logical_or(*beside[:2]).mean(), np.logical_or(*beside[2:]).mean()) >= ALL)
+    return bool(np.maximum(np.logical_or(*beside[:2]).mean(), np.logical_or(*beside[2:]).mean()) >= LARGELY)
 
 
 def _overlap(x: ExtraInk, y: ExtraInk) -> bool:

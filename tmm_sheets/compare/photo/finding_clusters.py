@@ -18,16 +18,14 @@ from tmm_sheets.compare.elements import sampled
 from tmm_sheets.compare.findings import Verdict, of_radius, worst
 from tmm_sheets.compare.photo.judging import PhotoFinding
 from tmm_sheets.compare.photo.line_ends import one_line
+from tmm_sheets.compare.photo.profiles import HALF, LARGELY
 from tmm_sheets.compare.photo.small_marks import ALIKE, MOVED, TOGETHER
 from tmm_sheets.compare.photo.traces import ELSEWHERE, FARTHEST_OFF, ONE_POINT, SAMPLING, ExtraInk, InkTrace
 from tmm_sheets.drawing.marks import Points
 
 ONE = 5.0
 """mm between places of one view that are off, within which they are one: the circles round them would lie upon each other."""
-ON, MOSTLY = 1.5, 0.5
-"""mm from a line within which ink is its own, and least share of one that lies so near the other."""
-ALONG = 0.8
-"""Least share of ink that lies near the place of a line that is off for it to be its own."""
+ON = 1.5  # mm from a line within which ink is its own
 LIKE = (0.5, 1.5)
 """Extent of ink that may be lettering that is not there, in that of the lettering."""
 ROOM = 2.0
@@ -173,7 +171,7 @@ def _is_ink_of(f: PhotoFinding, x: ExtraInk) -> bool:
     at = f.trace.at
     if at is None or f.element.kind == "text" or f.trace.deviation <= f.tolerance:
         return False
-    return _share(x.points, sampled(at, SAMPLING)[0], ON) >= MOSTLY
+    return _share(x.points, sampled(at, SAMPLING)[0], ON) >= HALF
 
 
 def _runs_along(f: PhotoFinding, x: ExtraInk) -> bool:
@@ -183,7 +181,7 @@ def _runs_along(f: PhotoFinding, x: ExtraInk) -> bool:
         return False
     line, normal = sampled(e.points, SAMPLING)
     away = np.abs(x.points[:, None] - line)
-    if (away.min(1) <= FARTHEST_OFF).mean() < ALONG:
+    if (away.min(1) <= FARTHEST_OFF).mean() < LARGELY:
         return False
     way = _main_direction(x.points)
     return bool(abs((way * np.conj(normal[away.argmin(1)])).real).mean() < 0.5)  # within some 30 degrees of its direction

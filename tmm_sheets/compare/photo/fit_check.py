@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.compare.photo.map_fit import APART, Seen, fit_map, patches
-from tmm_sheets.compare.photo.profiles import ProfileLines, peaks, profiles
+from tmm_sheets.compare.photo.profiles import HALF, LITTLE, MOSTLY, WHOLE, ProfileLines, peaks, profiles
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats, Map
 from tmm_sheets.drawing.marks import Points
 
@@ -26,8 +26,6 @@ PART = 50.0
 """mm; lines in a square of this side are near each other."""
 ASTRAY = 0.35
 """Share of a cell's points in place below which it is astray."""
-BARE = 0.3
-"""Share of a cell's points with any ink near below which it is hidden."""
 LOCAL = 0.07
 """Largest share of cells astray that may be the student's doing: a view in a wrong place."""
 STRIP, AT_SIDE, FEW = (100.0, 50.0, 25.0), 2.0, 6
@@ -35,16 +33,12 @@ STRIP, AT_SIDE, FEW = (100.0, 50.0, 25.0), 2.0, 6
 of points by which a strip can be judged."""
 HALVES = 1.5
 """Largest distance, mm, between where maps fitted to either half of the sheet have the line between them."""
-MATCH = 0.5
+MATCH = HALF
 """Least share of a sheet's lines that must be where they belong."""
 IN_PLACE, NEAR = 0.5, 3.0
 """mm from its place within which a line is in place, or has ink near."""
-WHOLE = 0.9
-"""Share of lines in place from which on paper that is not smooth is believed, and a frame of which a side is hidden; of a side's
-points that has a line in a fit that is beyond doubt.
-"""
-SIDE, ALONGSIDE = 0.6, 0.5
-"""Least share of a side's points that must have a line for the side to count as seen, as a whole and beside a cell."""
+SIDE = MOSTLY
+"""Least share of a side's points that must have a line for the side to count as seen."""
 SIDES, SIDES_OF_PLACED = 3, 2
 """Least number of sides that must be seen; and where nearly all lines are in place, all over the sheet."""
 SHIFTED, ALIKE = 1.5, 0.8
@@ -198,7 +192,7 @@ def _displaced_cells(lines: ProfileLines, good: Any, some: Any) -> tuple[Points,
             here = way & (cell == k)
             if here.sum() < LEAST_POINTS or len(np.unique(lines.line[here])) < LEAST_LINES:
                 continue
-            if some[here].mean() < BARE:
+            if some[here].mean() < LITTLE:
                 continue
             judged += 1
             if good[here].mean() < ASTRAY:
@@ -225,7 +219,7 @@ def strips_adrift(lines: ProfileLines, good: Any, some: Any, shares: Floats) -> 
             for deep in STRIP[1:]:
                 here = beside & (depth < deep) & (place == one)
                 shown = here & some
-                if shown.sum() >= FEW and some[here].mean() >= BARE and good[shown].mean() < ASTRAY:
+                if shown.sum() >= FEW and some[here].mean() >= LITTLE and good[shown].mean() < ASTRAY:
                     out.append(complex(p[shown].mean()))
                     break
     return np.array(out, complex)
@@ -243,7 +237,7 @@ def _frame_is_seen(z: complex, p: Points, met: Any) -> bool:
     reach = complex(FRAME.width / CELLS[0], FRAME.height / CELLS[1])
     d = p - z
     beside = (np.abs(d.real) < 0.75 * reach.real) & (np.abs(d.imag) < 0.75 * reach.imag)
-    return not beside.any() or float(met[beside].mean()) >= ALONGSIDE
+    return not beside.any() or float(met[beside].mean()) >= HALF
 
 
 def _between_halves(m: Map, sides: Seen, seen: Seen) -> float:

@@ -32,17 +32,15 @@ from tmm_sheets.compare.photo.frame_candidates import (
 )
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map
 from tmm_sheets.compare.photo.photograph import Grey
-from tmm_sheets.compare.photo.profiles import ProfileLines, darkness, follow, peaks, sample
+from tmm_sheets.compare.photo.profiles import HALF, LARGELY, MOSTLY, NEARLY_ALL, ProfileLines, darkness, follow, peaks, sample
 from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, STATIONS, Floats, Map, chords, homography, projected
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.words import marked, tell
 
 SMALL = 1800  # pixels of the longer side of the picture in which the frame is sought
-FOUND = 0.6  # least score of a frame: share of the title block's lines times share of the sides that have ink
-SURE = 0.85  # score beyond which no further guess is tried
-ALONG = 0.8  # least share of ink in a line that runs all along a side
-BARE = 0.5  # share of ink below which a side is astray
+FOUND = MOSTLY  # least score of a frame: share of the title block's lines times share of the sides that have ink
+SURE = NEARLY_ALL  # score beyond which no further guess is tried
 SHORTEST = 50  # pixels, of a side
 PALE = 45.0  # darkness below which nothing is a line
 SHARP = marked("hold the camera still and wait for it to focus, in more light; or scan the sheet")
@@ -208,7 +206,7 @@ def _followed(ink: Any, guess: FrameGuess, level: float) -> tuple[Points, Points
     """Sides and corners of a guess, sides without ink sought nearby; None when they make no quadrilateral."""
     sides, corners = follow_sides(ink, guess)
     for k in range(4):
-        if inked(ink, sides[k], level) < BARE:
+        if inked(ink, sides[k], level) < HALF:
             guess = guess._replace(corners=side_moved_to_ink(ink, guess, k))
             sides, corners = follow_sides(ink, guess)
     if not np.isfinite(corners).all() or min(abs(a - b) for a, b in chords(corners)) < SHORTEST:
@@ -271,7 +269,7 @@ def _frame_within(found: FoundFrame, ink: Any, level: float) -> FrameGuess | Non
         margin = 20.0 if k == 3 else 5.0
         for first, last in ((1, 1), (1, 0), (0, 1)):
             inside = margin * (first + (last - first) * t[:, None]) + np.linspace(-1.5, 1.5, 7)
-            if (sample(ink, m.to_picture(a + t[:, None] * (b - a) + 1j * u * inside)) > level).any(1).mean() > ALONG:
+            if (sample(ink, m.to_picture(a + t[:, None] * (b - a) + 1j * u * inside)) > level).any(1).mean() > LARGELY:
                 seen[[k, (k + 1) % 4]] -= 1j * u * margin * np.array([first, last])
                 break
     if (seen == CORNERS).all():

@@ -46,7 +46,7 @@ from tmm_sheets.compare.photo.judging import PhotoFinding, judge, tolerance_of
 from tmm_sheets.compare.photo.lost_ink import Mask, at as hidden_at, lost_to_threshold, mask_washed_out
 from tmm_sheets.compare.photo.photo_report import image_report
 from tmm_sheets.compare.photo.photograph import SMALLER, Photograph
-from tmm_sheets.compare.photo.profiles import line_level, noise_level, pixels, sample
+from tmm_sheets.compare.photo.profiles import HALF, line_level, noise_level, pixels, sample
 from tmm_sheets.compare.photo.rectification import LONGEST, Rectified, rectify
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Map
 from tmm_sheets.compare.photo.traces import ELSEWHERE, ONE_POINT, ExtraInk, InkTrace, as_lines
@@ -64,8 +64,6 @@ REACH = 0.6
 OFFSETS = np.arange(-REACH, REACH + 0.05, 0.1)
 ALONG = 7
 """So many neighbouring places are averaged: a line that only crosses is no ink along this one."""
-SHOWN = 0.5
-"""Share of a line that must show for it to be judged by what shows."""
 ENDS = 1.5
 """Beside the ends of a line others begin, mm."""
 STAYS, ENDS_STAY = 2.0, 1.0
@@ -217,7 +215,7 @@ def inked(ink: Any, line: Points, level: float, hidden: Mask | None = None) -> f
     profile = sample(ink, pixels(points[:, None] + normals[:, None] * OFFSETS))
     there = cv2.blur(profile, (1, ALONG), borderType=cv2.BORDER_REPLICATE).max(1) > level
     shown = np.ones(len(points), bool) if hidden is None else ~hidden_at(points, hidden)
-    return float(there[shown].mean() if shown.mean() > SHOWN else there.mean())
+    return float(there[shown].mean() if shown.mean() > HALF else there.mean())
 
 
 PLACED = 0.25
@@ -448,9 +446,8 @@ EDGE = 0.01
 """Share of the picture's longer side within which its edge is."""
 OUT = 0.2
 """Share of a side outside the picture from which on that is what is wrong with it."""
-BENT, FOLLOWED = 1.0, 0.5
-"""mm by which a part of the frame that is seen is off, and least share of the frame that could be followed, for its sides not to be
-hidden but out of reach of any map of paper."""
+BENT = 1.0
+"""mm by which a part of the frame that is seen is off for its sides not to be hidden but out of reach of any map of paper."""
 FLAT_OR_PLACED = marked(
     "lay the sheet flat, weights on its corners, and photograph from straight above; "
     "if a view was drawn in another place, give --views FILE"
@@ -525,7 +522,7 @@ def _doubts_about_picture(grey: Any, found: Rectified) -> Iterator[tuple[str, st
 
 def _bent(found: Rectified) -> bool:
     """Whether the frame is seen, and no map of paper that lies down has it where it is."""
-    return found.check.rim > BENT and float((found.sides.weight > 0).mean()) >= FOLLOWED
+    return found.check.rim > BENT and float((found.sides.weight > 0).mean()) >= HALF
 
 
 def _outside(m: Map, shape: tuple[int, ...], k: int) -> float:

@@ -14,7 +14,7 @@ from tmm_sheets.compare.codes import Number, Remark, joined
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.findings import Finding, Outcome, Verdict, millimetres, of_radius, shifted, turned, verdict
 from tmm_sheets.compare.photo.line_ends import joint
-from tmm_sheets.compare.photo.lost_ink import HALF, LostToThreshold, may_be_lost, whole
+from tmm_sheets.compare.photo.lost_ink import HALF_THERE, LostToThreshold, may_be_lost, whole
 from tmm_sheets.compare.photo.traces import LOOSE_STYLES, InkTrace, open_line
 from tmm_sheets.drawing.styles import line_type
 
@@ -116,7 +116,7 @@ def _in_pieces(f: PhotoFinding) -> PhotoFinding:
     if f.verdict != "red" or not f.trace.pieces:
         return f
     if f.trace.status == "missing":
-        half = f.trace.covered >= HALF
+        half = f.trace.covered >= HALF_THERE
         if half and f.element.role in FORM_ROLES:
             return replace(f, verdict="green", deviation=0.0, remark=codes.IN_PIECES())
         remark: Remark | None = codes.HALF_SEEN() if half else codes.THIN_NOT_SEEN()

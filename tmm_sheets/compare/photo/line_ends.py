@@ -20,7 +20,7 @@ import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element, interruptions, sampled
-from tmm_sheets.compare.photo.profiles import pixels, sample
+from tmm_sheets.compare.photo.profiles import HALF, LARGELY, MOSTLY, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
 from tmm_sheets.compare.photo.traces import (
     ELSEWHERE,
@@ -28,6 +28,7 @@ from tmm_sheets.compare.photo.traces import (
     FARTHEST_OFF,
     LOOSE_STYLES,
     ONE_POINT,
+    PALE,
     SAMPLING,
     STEP,
     InkTrace,
@@ -46,14 +47,12 @@ LIFTED, RESTS, DRAWN_TO = 2.6, 1.2, 1.8
 line of a construction: nearer to its end there is the line or curve that it was to be drawn to."""
 RESUMED = 4
 """Places in a row with its own ink by which a line goes on after a wider gap than is usual."""
-CLEAR, CLEARER = 0.5, 0.6
-"""Ink is a line's own if so many mm outside the line (first number) it is paler than this share of the middle's (second)."""
+CLEAR = 0.5  # mm outside a line within which its own ink pales
 TORN = 0.4  # mm of bare paper beyond which ink that may be another's is another's
 VAGUE = 1.2  # mm between the bounds from which on the end is unknown
 SEEN, SHARE = 0.6, 0.4  # least mm, and least share, of its own ink beyond the end of a line that is too long
 BLUR = 0.25  # mm beyond its end within which ink may be blur
-PALER, MOST = 0.8, 0.8
-"""Least mm, and least share, of pale ink that is nobody else's by which a line goes on to its end: under adhesive tape."""
+PALER = 0.8  # least mm of pale ink that is nobody else's by which a line goes on to its end: under adhesive tape
 CROWDED = np.arange(0.4, 2.3, 0.1)
 """mm to both sides of a thin line within which others crowd it: there, as in the hub of many positions of a crank, it fades."""
 ROUND, TIP = 0.75, 0.55  # share of the pen's half width by which a line looks longer; mm by which an arrow looks shorter
@@ -155,7 +154,7 @@ def _end(way: _Way, across: Any, hidden: Any, crowded: Any, level: float) -> flo
     if most < min(shown, 0.0):
         rest = slice(extent[1] + 1, int((t < min(shown, 0.0)).sum()))
         weak = own[extent[1] + 2 : int((t < 0).sum())]
-        paler = pale[rest].sum() >= max(PALER / END_STEP, MOST * (~hidden[rest]).sum())
+        paler = pale[rest].sum() >= max(PALER / END_STEP, LARGELY * (~hidden[rest]).sum())
         faded = way.element.style in LOOSE_STYLES and crowded[rest].sum() > 0.5 * len(crowded[rest]) > 0
         lifted = _pencil_was_lifted(dark[rest], DRAWN_TO if way.element.role == "construction" else RESTS)
         return float("nan") if (len(weak) and weak.mean() > 0.3) or faded or paler or lifted else most - shown
@@ -184,7 +183,7 @@ def _ink_along(way: _Way, across: Any, hidden: Any, level: float) -> tuple[Any, 
     # Other lines make it darker, if anything.
     usual = np.median(depth[plain]) if plain.sum() > 4 else np.percentile(depth[way.t < 0], 20)
     dark = depth > max(level, 0.5 * float(usual))
-    clear = ~hidden & (beside < CLEARER * depth)
+    clear = ~hidden & (beside < PALE * depth)
     return dark, dark & clear, (depth > level) & clear
 
 
@@ -223,8 +222,6 @@ ROOM = 5
 """Places and rays to which the ink of others spreads."""
 WITHIN, AFTER = 0.2, 0.3
 """mm within the stroke that ends at an edge, beside half its width, and beyond the edge, where others' ink would move it."""
-EDGE = 0.5
-"""Share of a stroke's darkness at its edge."""
 LEAST, EDGE_SPREAD = 6, 0.25
 """Least number of rays on which the edge is nobody else's, and most that half of them may differ by, mm."""
 OFF = 0.2
@@ -288,7 +285,7 @@ def _edge(ray: Floats, within: Any) -> float:
     """Where on a ray the stroke that is darkest ends, in steps."""
     first = int(np.flatnonzero(within)[0])
     top = first + int(ray[within].argmax())
-    paler = np.flatnonzero(ray[top:] < EDGE * ray[top])
+    paler = np.flatnonzero(ray[top:] < HALF * ray[top])
     return top + int(paler[0]) - 0.5 if len(paler) else float(len(ray))
 
 
@@ -348,8 +345,6 @@ def ignore_junction_ends(traces: Sequence[InkTrace], elements: Sequence[Element]
     return out
 
 
-OVERLAP_MOSTLY = 0.6
-"""Least share of the shorter one of two lines that lies at the other for them to be one."""
 ENDS, STAYS = 1.0, 0.2
 """By how much more than another line's the ends of one, or the better one of them, may be off for it to be the line as well, mm."""
 ASTRAY = 2.0
@@ -397,4 +392,4 @@ def one_line(t: InkTrace, other: InkTrace) -> bool:
         return False
     a, b = sampled(t.at, SAMPLING)[0], sampled(other.at, SAMPLING)[0]
     near = np.abs(a[:, None] - b) <= ELSEWHERE
-    return bool(max(near.any(1).mean(), near.any(0).mean()) >= OVERLAP_MOSTLY)
+    return bool(max(near.any(1).mean(), near.any(0).mean()) >= MOSTLY)

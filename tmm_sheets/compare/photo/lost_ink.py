@@ -32,9 +32,20 @@ import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import SAMPLED, Element, grouped, sampled
-from tmm_sheets.compare.photo.profiles import ProfileLines, fit_freely, peaks, profiles, runs
+from tmm_sheets.compare.photo.profiles import (
+    HALF,
+    LITTLE,
+    NEARLY_ALL,
+    NOTHING,
+    WHOLE,
+    ProfileLines,
+    fit_freely,
+    peaks,
+    profiles,
+    runs,
+)
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Floats, Map
-from tmm_sheets.compare.photo.traces import NEARLY_ALL, InkTrace, expected_ink
+from tmm_sheets.compare.photo.traces import InkTrace, expected_ink
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
@@ -48,8 +59,6 @@ CELL = 10
 """mm; side of the cells in which lines are counted."""
 BARE, LEAST = 0.75, 5
 """Least share of the points of lines about a cell that must be bare for it to be hidden, and least number of them."""
-SEEN = 0.5
-"""Share of points of lines in place from which on a darker or lighter ground hides nothing."""
 GLARE, PAPER_GREY = 252, 240
 """Grey from which on the ground is washed out by a flash, where the paper as a whole is darker than the second number."""
 GLOW = 0.08
@@ -59,9 +68,8 @@ LOST = 0.12
 RIM = 5  # mm about the frame that what hides a sheet reaches
 MARGIN, EDGE = 5, 3
 """mm by which hidden places are widened, for edges cast shadows; and by which the back of a dog-ear is."""
-INSIDE, LEG, GONE = 2, (20, 150), 0.9
-"""mm inside an edge of the paper where it is seen how much of a corner is gone, the least and most of that, and least share of the
-corner that is gone with it."""
+INSIDE, LEG = 2, (20, 150)
+"""mm inside an edge of the paper where it is seen how much of a corner is gone, and the least and most of that."""
 PALE, COVERED = 0.4, 6
 """Darkness of the frame, as a share of the usual, below which it is not seen, and mm in a row of that by which it is covered."""
 ASIDE, DEEPEST, MARGIN_OUT = 8.0, 30.0, 20.0
@@ -105,7 +113,7 @@ def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: Profi
     labels, total, seen = counted((foreign | absent) & ~outside)
     low, high = ((round(z.real), round(PAPER.y1 - z.imag)) for z in FRAME.corners[[0, 2]].tolist())
     rim = cv2.rectangle(np.zeros(shape, np.uint8), low, high, 1, RIM) > 0
-    covers = np.isin(np.arange(len(total)), labels[rim]) & (total >= LEAST) & (seen < SEEN * total)
+    covers = np.isin(np.arange(len(total)), labels[rim]) & (total >= LEAST) & (seen < HALF * total)
     out |= covers[labels] & (labels > 0)
     # What still shows of a reflection that took many lines is too uneven to be judged.
     labels, total, seen = counted(share > 1 + GLOW)
@@ -118,7 +126,7 @@ def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: Profi
     out = widened(out)
     for flap in flaps(out & ~outside):
         there_ = there[flap[row, column]]
-        if there_.sum() <= SEEN * len(there_):
+        if there_.sum() <= HALF * len(there_):
             out |= widened(flap, EDGE)
     return out
 
@@ -181,7 +189,7 @@ def flaps(hidden: Mask) -> Iterator[Mask]:
         if not (LEG[0] <= min(a, b) and max(a, b) <= LEG[1]):
             continue
         row, column = np.mgrid[:a, :b]
-        if corner[:a, :b][row / a + column / b < 1 - 2 * MARGIN / min(a, b)].mean() < GONE:
+        if corner[:a, :b][row / a + column / b < 1 - 2 * MARGIN / min(a, b)].mean() < WHOLE:
             continue
         tip = (2 * a * a * b / (a * a + b * b), 2 * a * b * b / (a * a + b * b))
         flap = np.zeros(hidden.shape, np.uint8)
@@ -230,9 +238,7 @@ def _absent(row: Any, column: Any, there: Any, shape: tuple[int, int]) -> Mask:
 
 FEW = 4
 """Least number of lines of a width that tell anything."""
-WHOLE, SEVERAL = 0.9, 0.1
-"""Share of a line that has ink below which it is in pieces, and share of a width's lines in pieces from which on it is torn."""
-HALF, MOST = 0.4, 0.7
+HALF_THERE, MOST = 0.4, 0.7
 """Share of a line with ink in its place from which on it was not left out, and by which one must be seen elsewhere to be there."""
 
 
@@ -240,14 +246,14 @@ def torn_widths(traces: Sequence[InkTrace]) -> set[float]:
     """Widths of the lines that a picture has torn."""
     alone = (t for t in traces if t.status == "measured" and t.darkness and expected_ink(t.element) == 1.0)
     return {width for width, some in grouped(alone, lambda t: line_type(t.element.style).width).items()
-            if len(some) >= FEW and np.mean([t.covered < WHOLE for t in some]) >= SEVERAL}
+            if len(some) >= FEW and np.mean([t.covered < WHOLE for t in some]) >= NOTHING}
 
 
 def in_pieces(t: InkTrace, torn: set[float]) -> bool:
     """Whether too little is seen for a line to be called missing, or elsewhere, where those of widths ``torn`` are in pieces."""
     tears = line_type(t.element.style).width in torn
     if t.status == "missing":
-        return tears or t.covered >= HALF
+        return tears or t.covered >= HALF_THERE
     return t.status == "measured" and t.covered < (WHOLE if tears else MOST)
 
 
@@ -259,8 +265,7 @@ THIN = 0.3
 """mm; width of lines up to which they are eaten."""
 LONG, MANY = 15.0, 0.02
 """mm of a thin line, and share of such lines that are in pieces: a pencil leaves gaps in one of a hundred."""
-LARGE, NOTHING = 30.0, 0.1
-"""mm of a thin line that is not eaten whole, and its least rest."""
+LARGE = 30.0  # mm of a thin line that is not eaten whole
 LETTERS = 3
 """Letters that are not eaten all; of lettering that stands elsewhere one less."""
 
@@ -319,10 +324,7 @@ def _thin(t: InkTrace) -> bool:
     return t.element.kind != "text" and line_type(t.element.style).width <= THIN
 
 
-ABOUT, STEEP = 7, 0.9
-"""mm within which a shadow begins, and brightness of its dark side as a share of the other up to which its edge is steep."""
-TAKEN = 0.3
-"""Share of an element's place in such light from which on nothing is told of what is not seen of it."""
+ABOUT = 7  # mm within which a shadow begins whose edge is steep
 APART = 50.0
 """mm from which on two places are told of."""
 CUT = 1.0
@@ -337,20 +339,20 @@ def uneven_places(grey: Any, m: Map) -> Mask:
     """
     ground, _ = ground_of(grey, m, (round(PAPER.height), round(PAPER.width)))
     about = np.ones((ABOUT, ABOUT), np.uint8)
-    edges = cv2.erode(ground, about) < STEEP * cv2.dilate(ground, about)
+    edges = cv2.erode(ground, about) < WHOLE * cv2.dilate(ground, about)
     washed_out = (ground >= GLARE) & (np.median(ground) < PAPER_GREY)
     return np.asarray(edges | washed_out)
 
 
 def mask_washed_out(traces: Sequence[InkTrace], uneven: Mask) -> list[InkTrace]:
     """The traces; what is not seen, or only in part, where the light takes it away is hidden, and so is the end of a line."""
-    return [InkTrace(t.element, "hidden") if _doubtful(t) and at(_places(t.element), uneven).mean() >= TAKEN else
+    return [InkTrace(t.element, "hidden") if _doubtful(t) and at(_places(t.element), uneven).mean() >= LITTLE else
             _with_ends_shown(t, uneven) for t in traces]
 
 
 def _with_ends_shown(t: InkTrace, uneven: Mask) -> InkTrace:
     """A trace; where the light has taken what a line is too short by, its end is unknown."""
-    rests = [k for k, by in enumerate(t.ends) if by < -CUT and at(_unseen_places(t, k), uneven).mean() >= TAKEN]
+    rests = [k for k, by in enumerate(t.ends) if by < -CUT and at(_unseen_places(t, k), uneven).mean() >= LITTLE]
     begin, end = (np.nan if k in rests else by for k, by in enumerate(t.ends))
     return replace(t, ends=(begin, end)) if rests else t
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import cv2
 import numpy as np
 
-from tmm_sheets.compare.photo.profiles import ProfileLines, fit, pixels
+from tmm_sheets.compare.photo.profiles import LARGELY, ProfileLines, fit, pixels
 from tmm_sheets.compare.photo.sheet_map import AWAY, CORNERS, DEGREE, FRAME, PAPER, WAVES, Floats, Map, heights, projected, waves
 from tmm_sheets.drawing.marks import Points
 
@@ -231,8 +231,7 @@ SOFT = 0.6
 """Standard deviation, mm, by which lines are blurred: within a patch they are not all off by the same."""
 LIKE = 0.35
 """Least correlation of a patch with the picture."""
-CLEARLY, ELSEWHERE = 0.8, 1.5
-"""A patch tells nothing when it correlates this share as well farther than so many mm from its best place."""
+ELSEWHERE = 1.5  # mm; a patch tells nothing when it correlates nearly as well farther from its best place
 LEAST = 60.0
 """mm of lines in a patch that tells where it is."""
 
@@ -292,6 +291,6 @@ def _shift(score: Any) -> complex | None:
         return None
     y, x = np.ogrid[: score.shape[0], : score.shape[1]]
     far = np.hypot(y - row, x - column) > ELSEWHERE * SCALE
-    if float(score[far].max()) > CLEARLY * best:
+    if float(score[far].max()) > LARGELY * best:
         return None
     return complex(column - middle, middle - row) / SCALE

@@ -16,12 +16,10 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.lost_ink import Mask, at
-from tmm_sheets.compare.photo.profiles import fit, peaks, pixels, sample
+from tmm_sheets.compare.photo.profiles import HALF, LARGELY, MOSTLY, NEARLY_ALL, WHOLE, fit, peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
 from tmm_sheets.compare.photo.traces import (
-    ENOUGH,
     LEAST,
-    NEARLY_ALL,
     PALE,
     STEP,
     InkTrace,
@@ -124,7 +122,7 @@ def in_place(strip: Strip, level: float) -> InkTrace | None:
     if e.kind == "line" and quarter * e.length / len(free) > LEAST_END:
         parts += [slice(0, quarter), slice(-quarter, None)]
     halves = [good[k].sum() / max(free[k].sum(), 1) for k in parts if free[k].sum() > 3]
-    if share < ENOUGH * expected or min(halves, default=1.0) < 0.4 * expected:
+    if share < MOSTLY * expected or min(halves, default=1.0) < 0.4 * expected:
         return None
     if (np.abs(base @ x)[free] > OFF).mean() > 0.1:
         # Off its place: measured once more around where it is, even beyond the half way to the next line.
@@ -133,7 +131,7 @@ def in_place(strip: Strip, level: float) -> InkTrace | None:
         x = fit(base, o, use, 0.3)
     t = replace(measured(e, s, base @ x, free, float(share / expected)), darkness=float(np.median(strength[use])),
                 free=float(free.mean()))
-    if e.kind == "line" and t.deviation <= OFF and (others & own)[free].any(1).mean() >= ENOUGH:
+    if e.kind == "line" and t.deviation <= OFF and (others & own)[free].any(1).mean() >= MOSTLY:
         t = replace(t, parts=may_part(profile, others, e.length, t.darkness))
     if e.kind == "curve":
         step = e.length / len(o)
@@ -217,13 +215,9 @@ NEAREST, FARTHEST = 0.9, 3.0
 MOST_PLACES = 120  # places along a line
 AWAY = np.arange(-FARTHEST - 1.5, FARTHEST + 1.5 + STEP / 2, STEP)
 END_OFFSETS = np.arange(NEAREST, FARTHEST + STEP / 2, STEP)
-INKED, RIDGE = 0.5, 10
-"""Darkness as a share of that usual beyond which a place has ink; steps beyond a ridge within which there is paper."""
+RIDGE = 10  # steps beyond a ridge within which there is paper
 ABOUT = 2
 """Steps from where a ridge ought to be within which its top is: a hand draws a straight line to 0.2 mm."""
-VALLEY, GRAIN = 0.8, 0.9
-"""Darkness between both ridges, by the second one's, that half of the places have at most, and each of them: grain of paper and
-pencil makes a tenth of it."""
 TO_END = 2.0  # mm before the end of the line up to which the ridge must be seen
 BACK = 0.35
 """Offset of the ridge where the line was turned, as a share of that of its other end, up to which it leads there: a quarter of the
@@ -258,7 +252,7 @@ def narrow_divergence(t: InkTrace, ink: Any, words: Any, owners: Owners, usual: 
     unknown = _widened(aside, CLOSE) | (sample(words, pixels(places)) > 100)
     shown = ~_widened(unknown, ABOUT)
     for left in (True, False):
-        ridge, depth = ridges(profile if left else profile[:, ::-1], INKED * usual)
+        ridge, depth = ridges(profile if left else profile[:, ::-1], HALF * usual)
         if ridge.any(1).mean() * e.length < LEAST / 2:
             continue
         shows = (shown if left else shown[:, ::-1])[:, len(AWAY) // 2 :]
@@ -283,7 +277,7 @@ def ridges(profile: Any, least: float) -> tuple[Any, Any]:
     beyond = cv2.erode(outwards, np.ones((1, RIDGE + 1), np.uint8), anchor=(0, 0), borderType=cv2.BORDER_REPLICATE)
     valley = np.minimum.accumulate(outwards, 1)
     top = outwards >= cv2.dilate(outwards, np.ones((1, 2 * ABOUT + 1), np.uint8))
-    ridge = top & (outwards > least) & (valley < GRAIN * outwards) & (beyond < PALE * outwards)
+    ridge = top & (outwards > least) & (valley < WHOLE * outwards) & (beyond < PALE * outwards)
     return ridge, valley / np.maximum(outwards, 1)
 
 
@@ -295,7 +289,7 @@ def may_part(profile: Any, others: Any, length: float, dark: float) -> bool:
     shows = ~_widened(others, CLOSE)
     middle = profile.shape[1] // 2
     sides = ((profile, shows), (profile[:, ::-1], shows[:, ::-1]))
-    return any((ridges(p, INKED * dark)[0] & s[:, middle:]).any(1).mean() * length >= LEAST / 2 for p, s in sides)
+    return any((ridges(p, HALF * dark)[0] & s[:, middle:]).any(1).mean() * length >= LEAST / 2 for p, s in sides)
 
 
 def _widened(places: Any, steps: int) -> Any:
@@ -323,7 +317,7 @@ def _parting(run: Floats, length: float, ridge: Any, shows: Any, depth: Any) -> 
         slope, begin = np.polyfit(run[rows], STEP * columns, 1)
         last = float(begin + slope)
         parts = NEAREST <= last <= FARTHEST + ABOUT * STEP and abs(begin) <= BACK * last
-        whole = (1 - run[rows].max()) * length <= TO_END and np.median(depth[rows, columns]) <= VALLEY
+        whole = (1 - run[rows].max()) * length <= TO_END and np.median(depth[rows, columns]) <= LARGELY
         if parts and whole and (best is None or len(rows) > best[0]):
             best = len(rows), np.array([begin, last])
     return None if best is None else best[1]

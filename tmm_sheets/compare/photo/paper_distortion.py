@@ -18,7 +18,7 @@ import numpy as np
 from tmm_sheets.compare.elements import Element, grown, sampled
 from tmm_sheets.compare.photo.lost_ink import Mask, at
 from tmm_sheets.compare.photo.map_fit import LENS, Seen, camera_foot, camera_height, lens_and_homography
-from tmm_sheets.compare.photo.profiles import fit, follow, ink_levels, peaks, pixels, runs, sample
+from tmm_sheets.compare.photo.profiles import LARGELY, fit, follow, ink_levels, peaks, pixels, runs, sample
 from tmm_sheets.compare.photo.sheet_map import AWAY, FRAME, PAPER, Floats, Map, drawn_in, spline_base, spline_nodes
 from tmm_sheets.compare.photo.traces import SAMPLING, Owners, Stations, fill, measurable, similarity_base
 from tmm_sheets.drawing.marks import Points
@@ -136,8 +136,6 @@ LOOSE, STRAIGHT = 0.3, 0.4
 """mm off a similarity from which on a station counts little, and least share of a line that is not."""
 BENT, BEND = 0.5, 6
 """mm off a similarity from which on a line is bent, and for how many stations."""
-INKED = 0.8
-"""Least share of the stations of a bend, and of those beside it, that have ink."""
 SEVERAL, TOGETHER = 3, 60.0
 """Least number of lines bent near each other by which the paper bulges, and how near that is, mm."""
 TABLES = ("frame", "table")
@@ -321,7 +319,7 @@ def _bent(e: Element, z: Points, n: Points, o: Floats, known: Any, seen: Any) ->
         far = (sign * off > BENT) | ~known
         for a, b in runs(far):
             beside = slice(max(a - BEND, 0), b + BEND)
-            if (seen & far)[a:b].sum() >= BEND and seen[beside].sum() >= INKED * known[beside].sum():
+            if (seen & far)[a:b].sum() >= BEND and seen[beside].sum() >= LARGELY * known[beside].sum():
                 here[a:b] |= seen[a:b]
     return here
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.photo.profiles import fit, inked, line_level
+from tmm_sheets.compare.photo.profiles import HALF, fit, inked, line_level
 from tmm_sheets.compare.photo.sheet_map import FRAME, Map
 from tmm_sheets.compare.photo.traces import ExtraInk, as_lines, similarity_base
 from tmm_sheets.compare.placing import BESIDE, SYMBOL, Placing, StatedViewPlace, links, moved
@@ -24,10 +24,6 @@ from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import decimal, told
 from tmm_sheets.words import tell, tell_n
 
-FOUND = 0.5
-"""Least share of a view's lines that must be in place."""
-INKED = 0.5
-"""Least share of ink in a line that leads to another view for it to be compared."""
 PRIOR = 0.1
 """Weight of the prior for no change: long vectors side by side tell next to nothing of what is along them."""
 COARSE_TO_FINE = ((4.0, 1.0), (2.5, 0.7), (1.5, 0.5), (1.0, 0.3), (0.8, 0.2))
@@ -119,7 +115,7 @@ def _place_view(
     loose = leading if start is not None else frozenset()
     body = [e for e in mine if e.number not in loose]
     where, share = _fit(body, start or Placing(), ink, level, free=start is not None)
-    if share < FOUND:
+    if share < HALF:
         return _PlacedView(share, None, [], 0)
     here = [moved(e, where) for e in mine]
     there = [e for e in here if e.number not in loose or _drawn(e, ink, level)]
@@ -169,7 +165,7 @@ def _drawn(e: Element, ink: Any, level: float) -> bool:
     lines = as_lines([e], least=0.0)
     if not all(FRAME.contains(z) for z in e.points.tolist()) or not len(lines.points):
         return False
-    return float(inked(ink, lines, 1.0, level)[1].mean()) > INKED
+    return float(inked(ink, lines, 1.0, level)[1].mean()) > HALF
 
 
 def _notes(

@@ -1,4 +1,4 @@
-"""Darkness of a picture, sampled along lines and across them, and how dark ink is.
+"""Darkness of a picture, sampled along lines and across them, how dark ink is, and how much is much.
 
 Pictures are arrays with row 0 at the top; their points are complex numbers, pixels.
 
@@ -19,6 +19,9 @@ from tmm_sheets.drawing.marks import Points
 
 SCALE = 6.0
 """Pixels per millimetre of the rectified sheet."""
+NOTHING, LITTLE, HALF, MOSTLY, LARGELY, NEARLY_ALL, WHOLE = 0.1, 0.3, 0.5, 0.6, 0.8, 0.85, 0.9
+"""Shares (of places, of ink, of darkness, of likeness) up to which, or from which on, something counts as nothing, little .. whole:
+one scale wherever it is asked, for no picture tells finer steps."""
 
 
 class Region(NamedTuple):

@@ -28,7 +28,7 @@ from tmm_sheets.compare.photo.lost_ink import LostToThreshold, Mask, hidden_plac
 from tmm_sheets.compare.photo.map_fit import SIDE, Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.paper_distortion import about, bulge_notes, fit_surface, over_bulges
 from tmm_sheets.compare.photo.photograph import Photograph
-from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, inked, line_level, noise_level
+from tmm_sheets.compare.photo.profiles import LARGELY, LITTLE, SCALE, WHOLE, ProfileLines, darkness, inked, line_level, noise_level
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, RELIEF, Floats, Map
 from tmm_sheets.compare.photo.traces import as_lines
 from tmm_sheets.errors import CannotBuild
@@ -67,17 +67,13 @@ TOGETHER, RIM, BETTER = 0.07, 0.35, 0.75
 the former that may be left."""
 BY_LINES = ((3.5, 0, 1.5), (3.5, 0, 1.5), (3.5, 0, 1.5), (3.5, 2, 1.0), (2.5, 2, 1.0))
 """The same for the lines alone, from a map that is right in part of the sheet."""
-WHOLE = 0.98
+FOLLOWED = 0.98
 """Share of a side's points in place below which the side is followed once more, near where the lines inside have it."""
 ABOUT = 1.5
 """How near that is, mm."""
 FAR = 3.0
 """The same where a surface may be in part, mm; the edge of the paper is 5 mm from the frame."""
 NO_SIDES = Seen(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, complex), np.zeros(0))
-CURVED = 0.8
-"""Least share of lines in place from which on a surface is believed that only a frame led to."""
-HOPELESS = 0.3
-"""Share of lines in place below which a fit is right nowhere."""
 TRIED, UNLIKELY = 3, 0.4
 """How many other frames are tried, and the score below which none is."""
 NODE = 6.0  # mm between the nodes at which the map is evaluated; an even number of pixels at every scale
@@ -163,7 +159,7 @@ def rectify(
     except CannotBuild as e:
         refused = e
     first = attempts.framed
-    if first is not None and float(first.check.sides.min()) >= WHOLE:
+    if first is not None and float(first.check.sides.min()) >= FOLLOWED:
         _remarks(path, first.scale, first.frame.smear, first.found.turned)  # refused before more is tried in vain
     if by_lines:
         attempts.finer()
@@ -251,8 +247,8 @@ class Attempts:
         if self.framed is None or attempt.check.sides.mean() > self.framed.check.sides.mean():
             self.framed = attempt._replace(frame=frame)
         # Where a side is hidden in part, what was followed there is something else, and draws the map to it.
-        framed = attempt.check.sound and float(attempt.check.sides.min()) >= fit_check.WHOLE
-        if self.by_lines and not framed and attempt.check.match > HOPELESS:
+        framed = attempt.check.sound and float(attempt.check.sides.min()) >= WHOLE
+        if self.by_lines and not framed and attempt.check.match > LITTLE:
             with suppress(CannotBuild, np.linalg.LinAlgError):
                 self._keep(self._fit(found, frame_search.frame_about(self.grey, self._without_frame(attempt.map), ABOUT)))
 
@@ -283,7 +279,7 @@ class Attempts:
         """Whether a surface is to be believed: what so supple a map leaves astray may be its own doing, and it needs all sides."""
         if not best.check.moored and float(finer.check.sides.min()) < fit_check.SIDE:
             return False
-        least = max(best.check.match - 0.01, CURVED)
+        least = max(best.check.match - 0.01, LARGELY)
         astray = len(best.check.astray) if best.check.moored else 0
         return (finer.check.together < BETTER * best.check.together and finer.check.match > least
                 and len(finer.check.astray) <= astray)
@@ -316,7 +312,7 @@ class Attempts:
             if match >= MATCH:
                 m = better
             check = fit_check.check(m, straight, sides, ink, self.lines, level, COARSE)
-            if match < MATCH or check.sides.min() > WHOLE:
+            if match < MATCH or check.sides.min() > FOLLOWED:
                 break
             # Part of a side was followed along something else: now it is known where the frame must be.
             sides = frame_search.sides_near(self.grey, m, ABOUT)
@@ -345,7 +341,7 @@ class Attempts:
                 seen = Seen(straight.to_picture(at + self.lines.normals * o), self.lines.points, self.lines.normals, weight * use)
                 m = fit_surface(m, own, max(2 * far, 0.5), seen, far)
             check = fit_check.check(m, straight, sides, ink, self.lines, level, COARSE)
-            if check.match < MATCH or (not len(check.astray) and float(check.sides.min()) > WHOLE):
+            if check.match < MATCH or (not len(check.astray) and float(check.sides.min()) > FOLLOWED):
                 break
             # Where a corner was farther off than lines are sought, its patches know by now where it is.
             sides = frame_search.sides_near(self.grey, m, FAR)

@@ -26,9 +26,22 @@ from tmm_sheets import quoting
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo.lost_ink import Mask, at
-from tmm_sheets.compare.photo.profiles import NO_GREY, SCALE, Region, pixels, regions, sample, window
+from tmm_sheets.compare.photo.profiles import (
+    HALF,
+    LITTLE,
+    MOSTLY,
+    NO_GREY,
+    NOTHING,
+    SCALE,
+    WHOLE,
+    Region,
+    pixels,
+    regions,
+    sample,
+    window,
+)
 from tmm_sheets.compare.photo.sheet_map import PAPER, Floats
-from tmm_sheets.compare.photo.traces import ABOUT_INK, FARTHEST_OFF, InkTrace, Status, fill, painted, seen_at
+from tmm_sheets.compare.photo.traces import ABOUT_INK, FARTHEST_OFF, PALE, InkTrace, Status, fill, painted, seen_at
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput
 from tmm_sheets.words import tell
@@ -43,34 +56,29 @@ SIZES = 0.45, 2.8
 """Area of a spot as a share of that of the dot."""
 SWOLLEN = 1.5
 """How much larger than that a spot may be in a black and white picture, in which all that was half dark is black."""
-WIDER, ROUND, FULL = 1.0, 2.0, 0.6
-"""mm by which a spot may be wider than the dot, how much longer than wide, and the least share of its rectangle that it fills."""
+WIDER, ROUND = 1.0, 2.0
+"""mm by which a spot may be wider than the dot, and how much longer than wide."""
 ROOM = 2.5
 """mm beyond the farthest spot that are looked at."""
 AROUND = complex(FARTHEST_OFF + ROOM, FARTHEST_OFF + ROOM)
-FAINT, DARK, SMALL_DARK, SMALL = 0.3, 0.6, 0.35, 0.45
-"""Darkness from which on a place belongs to a spot, and least darkness of a spot and of a dot in its place, as shares of the
-lines'; the same of dots of less than the radius, mm, which blur makes pale."""
+SMALL_DARK, SMALL = 0.35, 0.45
+"""Least darkness, as a share of the lines', of dots of less than the radius, mm, which blur makes pale."""
 TOUCHED = 9
 """Pixels about the middle of a small spot that nothing else may take, unless it is no end of a line."""
-FALLS = 0.9
-"""Share of its darkness below which ink falls on all sides of a spot within :data:`ABOUT_INK` mm."""
 ACROSS, OVER = 0.6, 4.0
 """mm beside the way on of a line, and beyond its end, within which a spot may be what was drawn too far of it."""
 UNKNOWN, AS_SEEN = 1.0, 0.15
 """Darkness in its place, as a share of the lines', of a dot that lines would show as well; by how much one must be seen less than
 another to be meant rather."""
-COVERED = 0.3
-"""Share of a small dot under lines from which on its place, where they cross, is dark with it or without."""
 TELLS = 0.15
 """Least share of a dot that lines do not show as well for anything to be told of its place."""
 RIM = 0.1
 """mm about the edge of a dot that are paler: blur."""
 PENCIL, MEET = 0.3, 5
 """mm by which a dot drawn by hand may be larger or aside; pixels between lines that blur fills."""
-BUMP, OWN, SPREAD, WITHIN = 0.5, 0.1, 0.4, 0.75
-"""Darkness all over a dot on lines beyond what they have, as a share of the usual, and such beyond which it is in its place; mm by
-which the places where its middle may be are wider than its radius; and how much of its radius a head beside it is wide."""
+SPREAD, WITHIN = 0.4, 0.75
+"""mm by which the places where the middle of a dot on lines may be are wider than its radius; and how much of its radius a head
+beside it is wide."""
 BEYOND, PALER, ODD, CLEAR = 0.45, 0.4, 0.07, 0.25
 """mm beyond its edge where ink ends that is darker than this share of the usual; share of the way round there that may have more
 ink than lines have, and least share that is bare."""
@@ -111,10 +119,10 @@ def displaced_dots(
     lost = np.array([z for ends in astray for z in ends], complex)
     begins, ends = np.array([(z, w) for a, b in rods for z, w in ((a, b), (b, a))], complex).reshape(-1, 2).T
     for e in some:
-        least = usual * (SMALL_DARK if e.radius < SMALL else DARK)
+        least = usual * (SMALL_DARK if e.radius < SMALL else PALE)
         if (there := _seen_in_place(e, lines, ink, words)) > least:
             continue
-        spots = _spots(e, (begins, ends), taken, ink, words, FAINT * usual, least)
+        spots = _spots(e, (begins, ends), taken, ink, words, LITTLE * usual, least)
         if e.radius >= SMALL and not len(spots) and usual < NO_GREY:
             spots = _dot_like_places(e, some, lines, ink, words if bars is None else np.maximum(words, bars), usual)
         for spot in sorted(spots[~at(spots, hidden)], key=lambda z: abs(z - e.centre))[:1]:
@@ -136,11 +144,11 @@ def _spots(e: Element, rods: tuple[Points, Points], taken: Any, ink: Any, words:
     clear = cv2.erode(free, np.ones((TOUCHED, TOUCHED), np.uint8)) > 0
     labels, found = regions(seen, here[1].start, here[0].start)
     size, out = np.pi * e.radius**2 * SCALE**2, []
-    largest = SIZES[1] * (SWOLLEN if faint >= FAINT * NO_GREY else 1.0)
+    largest = SIZES[1] * (SWOLLEN if faint >= LITTLE * NO_GREY else 1.0)
     for spot in found:
         mine, (h, w), z = labels == spot.label, (side.stop - side.start for side in spot.here), spot.middle
         area, middle = int(mine.sum()), np.rint(pixels(np.array(z)) - complex(here[1].start, here[0].start))
-        round_ = max(w, h) <= min(ROUND * min(w, h), (2 * e.radius + WIDER) * SCALE) and area > FULL * w * h
+        round_ = max(w, h) <= min(ROUND * min(w, h), (2 * e.radius + WIDER) * SCALE) and area > MOSTLY * w * h
         if (round_ and SIZES[0] * size < area < largest * size and max(LEAST, e.radius + ASIDE) < abs(z - e.centre) < FARTHEST_OFF
                 and int(ink[here][mine].max()) > least and _stands_alone(seen, spot, area)
                 and (e.radius >= SMALL or clear[int(middle.imag), int(middle.real)] or _is_beside_line(z, rods, ink))):  # fmt: skip
@@ -155,7 +163,7 @@ def _is_beside_line(z: complex, rods: tuple[Points, Points], ink: Any) -> bool:
     along = ends - begins
     beyond = (z - ends) * np.conj(along / np.maximum(np.abs(along), 1e-9))
     drawn_over = (beyond.real > -ACROSS) & (beyond.real < OVER) & (np.abs(beyond.imag) < ACROSS)
-    return bool((around.min(0) < FALLS * around[:2].max()).all() and not drawn_over.any())
+    return bool((around.min(0) < WHOLE * around[:2].max()).all() and not drawn_over.any())
 
 
 def _stands_alone(seen: Any, spot: Region, area: int) -> bool:
@@ -173,7 +181,7 @@ def _seen_in_place(e: Element, lines: Any, ink: Any, words: Any) -> float:
     drawn, y, seen = _blurred(sample(lines, p)), sample(ink, p).astype(np.float64), sample(words, p) == 0
     plain = np.stack((drawn[seen], np.ones(seen.sum())), -1)
     line = sample(lines, p) > 127
-    if e.radius < SMALL and line[np.abs(places - e.centre) <= e.radius].mean() > COVERED:
+    if e.radius < SMALL and line[np.abs(places - e.centre) <= e.radius].mean() > LITTLE:
         return nan
     fit, best = np.linalg.pinv(plain), 0.0 if e.radius >= SMALL else nan
     for by in (grid + 1j * grid[:, None])[np.hypot(grid, grid[:, None]) <= ASIDE]:
@@ -205,9 +213,9 @@ def _dot_like_places(e: Element, some: Sequence[Element], lines: Any, ink: Any, 
     thick = cv2.erode(ink[here], disc) / usual - cv2.erode(_blurred(drawn), disc)
     strokes = cv2.erode(ink[here], small) / usual - cv2.erode(_blurred(lines[here]), small)
     away = np.abs(z - e.centre)
-    if thick[away <= ASIDE].max(initial=0.0) > OWN:
+    if thick[away <= ASIDE].max(initial=0.0) > NOTHING:
         return np.zeros(0, complex)
-    there = (thick > BUMP) & (away > max(LEAST, e.radius + ASIDE)) & (away < FARTHEST_OFF) & (words[here] == 0)
+    there = (thick > HALF) & (away > max(LEAST, e.radius + ASIDE)) & (away < FARTHEST_OFF) & (words[here] == 0)
     known = np.maximum(drawn, words[here])
     out = []
     for region in regions(there, left, top)[1]:

@@ -13,15 +13,12 @@ import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown, sampled
-from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, pixels, sample
+from tmm_sheets.compare.photo.profiles import MOSTLY, SCALE, ProfileLines, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import PAPER, Floats
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
-NEARLY_ALL = 0.85
-"""Least share with ink of a line that is whole."""
-
-PALE = 0.6
+PALE = MOSTLY
 """Darkness as a share of that usual, or of a line's, below which a place is another line's, or paper."""
 
 ABOUT_INK = 0.9
@@ -109,7 +106,6 @@ STEP = 0.1  # mm between offsets of a profile
 END_STEP = 0.2  # mm between places along a line at which its ends and its head are looked for
 LEAST = 6.0  # mm of line that can be measured
 BLURRED = 7  # steps over which a line that crosses may be seen, beside its own width
-ENOUGH = 0.6  # least share of an element's ink on the line it is fitted by
 
 
 class Stations(NamedTuple):

@@ -28,14 +28,13 @@ from tmm_sheets.compare.photo.displacement import beside, better_match, displace
 from tmm_sheets.compare.photo.line_ends import ignore_junction_ends, resolve_overlaps, with_edges, with_ends
 from tmm_sheets.compare.photo.lost_ink import Mask, at, in_pieces, share_hidden, torn_widths, widened
 from tmm_sheets.compare.photo.own_place import Strip, in_place, narrow_divergence, strips, uncovered
-from tmm_sheets.compare.photo.profiles import NO_GREY, SCALE, ink_levels, pixels, sample
+from tmm_sheets.compare.photo.profiles import HALF, LITTLE, MOSTLY, NEARLY_ALL, NO_GREY, SCALE, WHOLE, ink_levels, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.small_marks import WRITTEN, displaced_dots
 from tmm_sheets.compare.photo.traces import (
     ABOUT_INK,
     ELSEWHERE,
     LEAST,
-    NEARLY_ALL,
     PALE,
     ROOM,
     ExtraInk,
@@ -59,19 +58,14 @@ from tmm_sheets.drawing.text_layout import text_box
 
 BAR = 1.5  # mm about lettering within which its bars are
 OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged
-NEARLY, WASHED_OUT = 0.3, 12
-"""Share of what is not seen that lies in hidden places or at their edge from which on it is hidden; mm about them where letters are
-washed out with the lines."""
-PARTLY, CLEAR = 0.45, 0.9
-"""Share of the columns of its place with ink below which part of lettering is missing, and least share of columns to be seen."""
+WASHED_OUT = 12  # mm about hidden places where letters are washed out with the lines
+PARTLY = 0.45  # share of the columns of its place with ink below which part of lettering is missing
 GAPPY = 0.65  # share of such columns below which it is looked whether lettering stands elsewhere
-OPEN = 0.3  # least share of a place that is free of lines for it to be told whether there is lettering
-COVERED, FAINT, BARE = 0.65, 0.3, 0.6
-"""Share of a line that others cover or run along from which on what was taken for it may be theirs: where it is alone, darkness as
-a share of the usual up to which it is not seen, and share of such places from which on it was theirs."""
-PALER, TO_DOT, AT_DOT = 0.5, 2.5, 0.8
-"""The same darkness in the half of a line next to a dot at which it ends, least mm of that where it is alone, and mm from its end
-to the middle of the dot: other helper lines end anywhere, this one must be seen to its point, if lines are grey at all."""
+COVERED = 0.65
+"""Share of a line that others cover or run along from which on what was taken for it may be theirs."""
+TO_DOT, AT_DOT = 2.5, 0.8
+"""Least mm of the half of a line next to a dot at which it ends where it is alone, and mm from its end to the middle of the dot:
+other helper lines end anywhere, this one must be seen to its point, if lines are grey at all."""
 
 
 def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> tuple[list[InkTrace], list[ExtraInk]]:
@@ -134,7 +128,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     out |= {t.element.number: t for t in _dots(small, headed, ink, words, hidden)}
     near = {"missing": widened(hidden)} | dict.fromkeys(("absent lettering", "part of lettering"), widened(hidden, WASHED_OUT))
     for t in [t for t in out.values() if t.status in near]:
-        if share_hidden(t.element, near[t.status]) > NEARLY:
+        if share_hidden(t.element, near[t.status]) > LITTLE:
             out[t.element.number] = InkTrace(t.element, "hidden")
     for e in elements:  # a hand may have written here
         if e.kind == "text":
@@ -187,14 +181,14 @@ def alone_on(strip: Strip, dots: Points, found: bool = True) -> _Alone | None:
     step, shows = e.length / len(dark), ~np.isnan(dark)
     share = float(shows.mean())
     if (share <= 1 - COVERED or (not found and e.kind == "line")) and share * e.length >= LEAST:
-        return _Alone(dark[shows], FAINT)
+        return _Alone(dark[shows], LITTLE)
     if e.kind != "line" or share > COVERED:
         return None
     half = len(dark) // 2
     for end, part in ((e.points[0], slice(half)), (e.points[-1], slice(-half, None))):
         before = dark[part][shows[part]]
         if len(before) * step >= TO_DOT and (np.abs(dots - end) <= AT_DOT).any():
-            return _Alone(before, PALER)
+            return _Alone(before, HALF)
     return None
 
 
@@ -234,10 +228,10 @@ def doubted(
     for t in found:
         dark = usual.get(line_type(t.element.style).width, 0.0)
         places = alone.get(t.element.number)
-        tells = places is not None and (places.faint <= FAINT or dark < NO_GREY)
+        tells = places is not None and (places.faint <= LITTLE or dark < NO_GREY)
         tells &= t.status != "missing" and t.deviation <= ELSEWHERE
-        covered = tells and places is not None and bool((places.dark <= places.faint * dark).mean() >= BARE)
-        covered |= t.element.kind == "line" and 0 < t.darkness <= FAINT * dark  # ends of a hatching in its place
+        covered = tells and places is not None and bool((places.dark <= places.faint * dark).mean() >= MOSTLY)
+        covered |= t.element.kind == "line" and 0 < t.darkness <= LITTLE * dark  # ends of a hatching in its place
         if covered:
             t = replace(t, status="covered", covered=0.0, darkness=0.0)
         if covered or (t.darkness and (t.darkness < PALE * dark or t.covered < NEARLY_ALL)):
@@ -345,8 +339,8 @@ def _traces_of_small(small: Sequence[Element], found: Sequence[InkTrace], ink: A
     shares = dark.sum(1) / np.maximum(free.sum(1), 1)
     shown, inked = ((part.reshape(-1, 24, 60).sum(1) >= rows) for part, rows in ((free, 8), (dark, 2)))
     columns = (inked & shown).sum(1) / np.maximum(shown.sum(1), 1)
-    there = (shares > WRITTEN) | (free.mean(1) < OPEN)
-    clear = shown.mean(1) > CLEAR
+    there = (shares > WRITTEN) | (free.mean(1) < LITTLE)
+    clear = shown.mean(1) > WHOLE
     gone = clear & (~there | ((columns < PARTLY) & (np.array([length for _, length, _ in runs]) > 1)))
     of = np.array([number for number, _, _ in runs])
     for e in words:
