@@ -9,7 +9,7 @@ from tmm_sheets.compare.photo.arrow_heads import with_heads
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.line_ends import with_ends
 from tmm_sheets.compare.photo.profiles import SCALE
-from tmm_sheets.compare.photo.traces import InkTrace, Owners, fill
+from tmm_sheets.compare.photo.traces import InkTrace, Owners, Paper, fill
 
 pytestmark = [pytest.mark.judging, pytest.mark.trial]
 
@@ -40,7 +40,7 @@ def heads(known, drawn, at=(), letters=(), blur=0.0, grey=True):
     if not grey:
         ink = np.where(ink > ink.max() / 4, np.uint8(255), np.uint8(0))
     traces = [InkTrace(e, "measured", at=e.points) for e in known]
-    return with_heads(traces, ink, owners, words, np.zeros((HIGH, WIDE), bool))
+    return with_heads(traces, Paper(ink, owners, words, np.zeros((HIGH, WIDE), bool), 40.0, 40.0))
 
 
 def ray(number, angle, style="vector", length=30):
@@ -157,10 +157,8 @@ def test_thin_lines_fade_in_the_hub_of_many_positions(positions, short):
         e = line(k + 1, hub, hub + 60 * np.exp(2j * np.pi * k / positions), "thin")
         lines.append(e)
         draw(ink, hub + (6 if k == 0 else 1) * (e.points[1] - hub) / 60, e.points[1], "thin")
-    owners = Owners(ROWS, COLUMNS)
-    for e in lines:
-        owners.add(e, e.points)
-    t = with_ends([InkTrace(lines[0], "measured", at=lines[0].points)], ink, owners, np.zeros_like(ink), 40)[0]
+    seen = Paper.of(lines, ink, np.zeros((HIGH, WIDE), bool))
+    t = with_ends([InkTrace(lines[0], "measured", at=lines[0].points)], seen)[0]
     assert ("too short at its beginning" in judge(t, 0.25, 0.15).what) == short
 
 
@@ -181,9 +179,7 @@ def test_a_faint_head_is_not_missed(dark, head):
     fill_head(ink, *BACK)
     ink = (ink * (dark / 180)).astype(np.uint8)
     draw(ink, A, B, "vector")
-    owners = Owners(ROWS, COLUMNS)
-    owners.add(e, e.points)
-    found = with_heads([InkTrace(e, "measured", at=e.points)], ink, owners, np.zeros_like(ink), np.zeros((HIGH, WIDE), bool))
+    found = with_heads([InkTrace(e, "measured", at=e.points)], Paper.of([e], ink, np.zeros((HIGH, WIDE), bool)))
     assert found[0].head in (head, "unknown") if dark else found[0].head == head
 
 
@@ -328,15 +324,13 @@ def test_a_vector_left_out_is_known_though_a_shorter_one_covers_part_of_it(share
 @pytest.mark.parametrize(("by", "status"), [(0.3j, "measured"), (3j, "missing")])
 def test_a_thin_line_elsewhere_is_not_the_vector_that_was_left_out(by, status):
     e, there = arrow(1, A, B), line(2, A + by * WAY, B + by * WAY, "thin")
-    ink, owners = paper(), Owners(ROWS, COLUMNS)
-    for k in (e, *SOUND):
-        owners.add(k, k.points)
+    ink = paper()
     for k in (there, *SOUND):
         draw(ink, *k.points, k.style)
     for place, way in THEIRS:
         fill_head(ink, place, way)
     traces = [InkTrace(e, "measured", deviation=abs(by), at=there.points), *(InkTrace(k, "measured", at=k.points) for k in SOUND)]
-    assert with_heads(traces, ink, owners, np.zeros_like(ink), np.zeros((HIGH, WIDE), bool))[0].status == status
+    assert with_heads(traces, Paper.of((e, *SOUND), ink, np.zeros((HIGH, WIDE), bool)))[0].status == status
 
 
 @pytest.mark.parametrize("aside", [1.1, 6.0])

@@ -10,7 +10,7 @@ from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.lost_ink import in_pieces, torn_widths
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Map, homography
-from tmm_sheets.compare.photo.traces import InkTrace, Owners
+from tmm_sheets.compare.photo.traces import InkTrace, Paper
 
 pytestmark = pytest.mark.judging
 
@@ -88,7 +88,7 @@ def test_stations_that_are_hidden_are_not_measured(gone):
     e = Element(1, VIEW, "a", "line", np.array([100 + 300j, 150 + 300j]), THICK)
     ink, mask = np.zeros((594 * 6, 841 * 6), np.uint8), np.zeros((594, 841), bool)
     mask[:, 150 - gone : 150] = True
-    strip, = own_place.strips([e], ink, Owners(*ink.shape), mask)
+    strip = own_place.strip_of(e, Paper.of((), ink, mask))
     shown = strip.stations.points
     assert len(shown) == len(strip.profile) == len(strip.stations.raw)
     assert shown.real.max() < (150 if gone in (0, 50) else 146)  # all of them where none is left

@@ -10,7 +10,7 @@ from tests.compare.test_tracing import line
 from tests.few import seldom
 from tmm_sheets.compare.elements import sampled
 from tmm_sheets.compare.photo import paper_distortion
-from tmm_sheets.compare.photo.profiles import ink_levels, pixels
+from tmm_sheets.compare.photo.profiles import pixels
 from tmm_sheets.compare.photo.rectification import straighten
 from tmm_sheets.compare.photo.sheet_map import Map, homography
 from tmm_sheets.drawing.marks import Provenance
@@ -43,7 +43,7 @@ def taken(place, some=SHEET):
 
 def bulging(picture, sheet=SHEET):
     ink = straighten(picture, AS_IT_IS)
-    return paper_distortion.local_distortion(paper_distortion.trace_lines(sheet, ink, ink_levels(ink)[1], NOTHING))
+    return paper_distortion.local_distortion(paper_distortion.trace_lines(sheet, ink, NOTHING))
 
 
 @pytest.mark.parametrize(("place", "some", "found"), [

@@ -1,14 +1,16 @@
 """Lines that part from a stroke of several by a millimetre or two, in a picture as coarse as a photograph."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
 
-from tests.compare.test_tracing import COLUMNS, ROWS, draw, line, paper
+from tests.compare.test_tracing import draw, line, paper
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.own_place import may_part, narrow_divergence
 from tmm_sheets.compare.photo.profiles import pixels, sample
-from tmm_sheets.compare.photo.traces import InkTrace, Owners
+from tmm_sheets.compare.photo.traces import InkTrace, Paper
 from tmm_sheets.compare.photo.tracing import trace
 
 pytestmark = pytest.mark.judging
@@ -31,13 +33,11 @@ def picture(drawn):
 
 def parting(drawn, known=STROKE):
     """What is found beside the stroke of the first of the lines that are known."""
-    ink, owners = picture(drawn), Owners(ROWS, COLUMNS)
+    ink = picture(drawn)
     elements = [line(k, *k_) for k, k_ in enumerate(known, 1)]
-    for e in elements:
-        owners.add(e, e.points)
     usual = float(sample(ink, pixels(np.array([A + 5]))).max())
     t = InkTrace(elements[0], "measured", at=elements[0].points)
-    return narrow_divergence(t, ink, np.zeros_like(ink), owners, usual)
+    return narrow_divergence(t, Paper.of(elements, ink, np.zeros((1, 1), bool)), usual)
 
 
 @pytest.mark.parametrize("forward", [True, False])
@@ -72,10 +72,10 @@ def test_the_line_of_another_is_not_taken():
 
 
 def test_where_letters_belong_nothing_is_seen():
-    e, owners = line(1, A, B, "axis"), Owners(ROWS, COLUMNS)
+    e = line(1, A, B, "axis")
     ink = picture([(A, B + 2.0j, "axis"), (A, B, "vector")])
-    words = np.full_like(ink, 255)
-    assert narrow_divergence(InkTrace(e, "measured", at=e.points), ink, words, owners, 80.0) is None
+    seen = replace(Paper.of((), ink, np.zeros((1, 1), bool)), words=np.full_like(ink, 255))
+    assert narrow_divergence(InkTrace(e, "measured", at=e.points), seen, 80.0) is None
 
 
 @pytest.mark.parametrize("dashed", [True, False])

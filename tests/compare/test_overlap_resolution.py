@@ -9,7 +9,7 @@ from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.photo.line_ends import resolve_overlaps
 from tmm_sheets.compare.photo.profiles import SCALE, pixels
 from tmm_sheets.compare.photo.sheet_map import PAPER
-from tmm_sheets.compare.photo.traces import InkTrace, Owners
+from tmm_sheets.compare.photo.traces import InkTrace, Paper
 
 pytestmark = pytest.mark.judging
 
@@ -24,14 +24,11 @@ def beside(number, length, begin, end, view=0):
 
 
 def others(found, *inked):
-    ink, words = np.zeros((ROWS, COLUMNS), np.uint8), np.zeros((ROWS, COLUMNS), np.uint8)
+    ink = np.zeros((ROWS, COLUMNS), np.uint8)
     for a, b in inked:
         p, q = (tuple(round(v) for v in (z.real, z.imag)) for z in pixels(np.array([a, b])))
         cv2.line(ink, p, q, 120, 2)
-    owners = Owners(ROWS, COLUMNS)
-    for t in found:
-        owners.add(t.element, t.element.points)
-    return resolve_overlaps(found, ink, owners, words, 40.0)
+    return resolve_overlaps(found, Paper.of([t.element for t in found], ink, np.zeros((1, 1), bool)))
 
 
 TURNED = (100 + 300j, 200 + 305j)

@@ -13,10 +13,10 @@ from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.photo import arrow_heads, displacement, tracing
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.line_ends import with_edges
-from tmm_sheets.compare.photo.own_place import strips
+from tmm_sheets.compare.photo.own_place import strip_of
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.small_marks import displaced_dots
-from tmm_sheets.compare.photo.traces import InkTrace, Owners, fill
+from tmm_sheets.compare.photo.traces import InkTrace, Owners, Paper, fill
 from tmm_sheets.compare.photo.tracing import trace
 from tmm_sheets.drawing.marks import Provenance as By, Text
 from tmm_sheets.drawing.styles import line_type
@@ -319,10 +319,7 @@ def test_a_line_from_the_same_pole_is_told_beside_a_vector(turn, beside):
     """At a small angle it looks like the edge of a head, from the other end of a vector whose tip is hidden."""
     a, b = 130 + 440j, 160 + 460j
     known = [arrow(1, a, b), line(2, a, a + 20 * np.exp(1j * turn) * (b - a) / abs(b - a))]
-    owners = Owners(ROWS, COLUMNS)
-    for e in known:
-        owners.add(e, e.points)
-    sheet = arrow_heads.Paper(paper(), owners, paper(), np.zeros((HIGH, WIDE), bool), [])
+    sheet = arrow_heads.Arrows(Paper.of(known, paper(), np.zeros((HIGH, WIDE), bool)), [])
     assert sheet.accompanied(known[0], a, (b - a) / abs(b - a)) is beside
 
 
@@ -696,7 +693,7 @@ def test_the_edge_of_a_joint_is_seen_between_lines_that_leave_it_closely(free, r
     for a, b in pairwise(CORNER + aside + radius * circle):
         draw(ink, a, b)
     t = InkTrace(e, "measured", shift=0.45j, deviation=0.45, at=e.points, free=0.3)
-    (found,) = with_edges([t], ink, owners, np.zeros_like(ink))
+    (found,) = with_edges([t], Paper(ink, owners, np.zeros_like(ink), np.zeros((1, 1), bool), 10.0, 10.0))
     assert (found.growth, abs(found.shift - aside)) == (pytest.approx(growth, abs=0.1), pytest.approx(0, abs=0.1))
     f = judge(found, 0.25, 0.15)
     assert (f.verdict, "radius 0.7" in f.what) == (("amber", True) if growth > 0.4 else ("green", False))
@@ -727,15 +724,15 @@ def test_a_line_that_others_cover_must_be_seen_to_the_dot_where_it_ends(end, dot
     """Another line runs along most of it, and was taken for it."""
     begin = CORNER - 18
     e, along = line(1, begin, CORNER, "construction"), line(2, begin - 5, CORNER - 5 + 0.2j, "construction")
-    ink, owners = paper(), Owners(ROWS, COLUMNS)
+    ink = paper()
     for one, to in ((e, end), (along, along.points[1])):
-        owners.add(one, one.points)
         draw(ink, one.points[0], to, one.style)
-    (strip,) = strips([e], ink, owners, np.zeros((1, 1), bool))
+    seen = Paper.of([e, along], ink, np.zeros((1, 1), bool))
+    strip = strip_of(e, seen)
     alone = tracing.alone_on(strip, np.array([CORNER] if dotted else [], complex))
     traces = [InkTrace(one, "measured", at=one.points, darkness=usual, covered=1.0) for one in (e, along)]
     nothing = np.zeros_like(ink)
-    found = tracing.doubted(traces, {} if alone is None else {1: alone}, ink, nothing, nothing, owners, 10)
+    found = tracing.doubted(traces, {} if alone is None else {1: alone}, nothing, nothing, seen)
     assert [t.status for t in found] == [status, "measured"]
 
 
@@ -744,8 +741,8 @@ def test_a_line_whose_place_is_far_paler_than_its_kind_is_not_there(dark, status
     """Ends of a hatching stand in its place."""
     known = [line(k, 30 + 440j + 10j * k, 90 + 440j + 10j * k) for k in range(3)]
     traces = [InkTrace(e, "measured", at=e.points, darkness=d, covered=1.0) for e, d in zip(known, (dark, 100, 100), strict=True)]
-    nothing, owners = np.zeros((ROWS, COLUMNS), np.uint8), Owners(ROWS, COLUMNS)
-    found = tracing.doubted(traces, {}, nothing, nothing, nothing, owners, 10)
+    nothing = np.zeros((ROWS, COLUMNS), np.uint8)
+    found = tracing.doubted(traces, {}, nothing, nothing, Paper.of((), nothing, np.zeros((1, 1), bool)))
     assert [t.status for t in found] == [status, "measured", "measured"]
 
 

@@ -27,11 +27,11 @@ import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.lost_ink import Mask, at
+from tmm_sheets.compare.photo.lost_ink import at
 from tmm_sheets.compare.photo.own_place import ALONG_STEP
 from tmm_sheets.compare.photo.profiles import HALF, LARGELY, LITTLE, MOSTLY, NEARLY_ALL, NOTHING, WHOLE, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.traces import ELSEWHERE, END_STEP, STEP, Head, InkTrace, Owners
+from tmm_sheets.compare.photo.traces import ELSEWHERE, END_STEP, STEP, Head, InkTrace, Owners, Paper
 from tmm_sheets.drawing.styles import line_type
 
 LEAST = 2.4
@@ -182,15 +182,10 @@ class _End:
 
 
 @dataclass(frozen=True)
-class Paper:
-    """The rectified picture, who is drawn where, places of lettering (255 there), where the sheet does not show, and heads of
-    arrows: the tip of each and the middle of its back.
-    """
+class Arrows:
+    """What shows, and the heads of arrows: the tip of each and the middle of its back."""
 
-    ink: Any
-    owners: Owners
-    words: Any
-    hidden: Mask
+    paper: Paper
     heads: Sequence[tuple[complex, complex]]
 
     def end(self, e: Element, tip: complex, other: complex) -> _End | None:
@@ -229,8 +224,9 @@ class Paper:
     def _beside(self, e: Element, tip: complex, way: complex, back: Floats) -> tuple[Any, Any, Any, Any]:
         """Ink across a line ``back`` mm from its tip, where others are, where letters may stand, and where it is hidden."""
         places = tip + way * (back[:, None] + 1j * ASIDE)
-        ink = sample(self.ink, pixels(places)).astype(np.float64)
-        return ink, self.owners.others(e.number, places), sample(self.words, pixels(places)) > 100, at(places, self.hidden)
+        paper = self.paper
+        return (paper.dark(places).astype(np.float64), paper.owners.others(e.number, places),
+                sample(paper.words, pixels(places)) > 100, at(places, paper.hidden))
 
     def another_points(self, e: Element, start: complex, way: complex) -> bool:
         """Whether another arrow on the same line points to where this one begins: the head there is that one's."""
@@ -250,7 +246,7 @@ class Paper:
         half = line_type(e.style).width / 2
         aside = np.arange(half + 0.1, 1.1, 0.15)
         places = start + way * (np.arange(1.2, 5.0, 0.2)[:, None] + 1j * np.concatenate((-aside, aside)))
-        return bool(self.owners.others(e.number, places).any())
+        return bool(self.paper.owners.others(e.number, places).any())
 
 
 def _run_under(others: Any, pen: float) -> tuple[float, float]:
@@ -278,29 +274,23 @@ def _usual(ink: Any, known: Any) -> Floats | None:
     return np.where(np.isnan(own), np.nanmin(own), own)
 
 
-def with_heads(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any, hidden: Mask) -> list[InkTrace]:
+def with_heads(traces: Sequence[InkTrace], paper: Paper) -> list[InkTrace]:
     """Look for the heads of arrows.
 
     Parameters
     ----------
     traces
         All; those of lines that are no vectors, or were not found, are left as they are.
-    ink
-        The rectified picture.
-    owners
-        Who is drawn where.
-    words
-        A picture of the places of lettering, 255 there.
-    hidden
-        Where the sheet does not show.
+    paper
+        What shows.
 
     Returns
     -------
     The traces in the same order, with ``head``.
     """
-    paper = Paper(ink, owners, words, hidden, [(complex(f[0]), complex(f[1:].mean())) for t in traces for f in t.element.fills])
-    found = {k: _head(t, paper) for k, t in enumerate(traces) if _wanted(t)}
-    thin = construction_only(traces, ink, hidden)
+    arrows = Arrows(paper, [(complex(f[0]), complex(f[1:].mean())) for t in traces for f in t.element.fills])
+    found = {k: _head(t, arrows) for k, t in enumerate(traces) if _wanted(t)}
+    thin = construction_only(traces, paper)
     seen = [traces[k].element for k, head in found.items() if head == "there"]
     out = list(traces)
     for k, head in found.items():
@@ -340,21 +330,21 @@ def _half_width(e: Element) -> float:
     return float(np.abs(((e.fills[0] - e.fills[0][0]) / way).imag).max() * abs(way))
 
 
-def _head(t: InkTrace, paper: Paper) -> Head:
+def _head(t: InkTrace, arrows: Arrows) -> Head:
     """What there is of a head at the tip, and at the other end when there is none."""
     assert t.at is not None
     way = (t.at[1] - t.at[0]) / abs(t.at[1] - t.at[0])
     beyond = [0.0 if np.isnan(by) else by for by in t.ends]
     begin, tip = complex(t.at[0] - way * beyond[0]), complex(t.at[1] + way * beyond[1])
-    here = paper.end(t.element, tip, begin)
+    here = arrows.end(t.element, tip, begin)
     if here is None:
         return "unknown"
-    alone = not paper.shares_tip(t.element, way)
+    alone = not arrows.shares_tip(t.element, way)
     has = here.has_head()
     if has and alone and not here.bare():
         return "there"
-    there = paper.end(t.element, begin, tip)
-    if there is None or paper.another_points(t.element, begin, way):
+    there = arrows.end(t.element, begin, tip)
+    if there is None or arrows.another_points(t.element, begin, way):
         return "there" if has else "absent" if here.headless() else "unknown"
     part = next(here.likeness(NEAR, SIZES)).part
     bare = here.bare()
@@ -366,7 +356,7 @@ def _head(t: InkTrace, paper: Paper) -> Head:
     if bare and there.has_head(HALF, NEARLY_ALL, LITTLE if part >= LITTLE else HALF):
         return "reversed"
     # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
-    if here.lined >= WHOLE and not paper.others_begin(t.element, begin, way) and there.has_head(HALF, ALONE, LARGELY):
+    if here.lined >= WHOLE and not arrows.others_begin(t.element, begin, way) and there.has_head(HALF, ALONE, LARGELY):
         return "reversed"
     if not alone and next(there.likeness(NEAR, SIZES)).part >= SIDE and there.has_head(HALF, NEARLY_ALL, SIDE):
         return "doubled"
@@ -398,23 +388,13 @@ class _Stroke(NamedTuple):
         return float(np.median(self.across))
 
 
-def construction_only(traces: Sequence[InkTrace], ink: Any, hidden: Mask) -> set[int]:
-    """Numbers of the vectors in whose places there is no more than a thin line.
-
-    Parameters
-    ----------
-    traces
-        All lines that were found.
-    ink
-        The rectified picture.
-    hidden
-        Where the sheet does not show.
-    """
-    thick = Owners(*ink.shape)
+def construction_only(traces: Sequence[InkTrace], paper: Paper) -> set[int]:
+    """Numbers of the vectors in whose places there is no more than a thin line; ``traces`` are all lines that were found."""
+    thick = replace(paper, owners=Owners(*paper.ink.shape))
     for t in traces:
         if line_type(t.element.style).width >= THICK:
-            thick.add(t.element, t.element.points)
-    strokes = [s for t in traces if vector(t) and (s := _stroke(t, ink, thick, hidden)) is not None]
+            thick.owners.add(t.element, t.element.points)
+    strokes = [s for t in traces if vector(t) and (s := _stroke(t, thick)) is not None]
     return {s.element.number for s in strokes if _thin(s, [o for o in strokes if o is not s])}
 
 
@@ -424,16 +404,16 @@ def vector(t: InkTrace) -> bool:
     return found and e.style == "vector" and e.kind == "line" and len(e.fills) == 1
 
 
-def _stroke(t: InkTrace, ink: Any, thick: Owners, hidden: Mask) -> _Stroke | None:
+def _stroke(t: InkTrace, thick: Paper) -> _Stroke | None:
     assert t.at is not None
     length = abs(t.at[-1] - t.at[0])
     way = (t.at[-1] - t.at[0]) / length
     p = t.at[0] + way * np.arange(SPARED, length - SPARED, ALONG_STEP)
     places = p[:, None] + 1j * way * THIN_ASIDE
-    free = ~thick.others(t.element.number, places).any(1) & ~at(p, hidden)
+    free = ~thick.owners.others(t.element.number, places).any(1) & ~at(p, thick.hidden)
     if free.sum() * ALONG_STEP < THIN_LEAST:
         return None
-    profile = sample(ink, pixels(places[free])).astype(np.float64)[:, OWN]
+    profile = thick.dark(places[free]).astype(np.float64)[:, OWN]
     pieces = [np.median(part, 0) for part in np.array_split(profile, max(len(profile) // PIECE, 1))]
     across = np.array([(part - part.min()).sum() for part in pieces])
     return _Stroke(t.element, across)

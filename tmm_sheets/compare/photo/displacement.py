@@ -20,11 +20,13 @@ from tmm_sheets.compare.photo.traces import (
     STEP,
     ExtraInk,
     InkTrace,
-    Owners,
+    Paper,
     Stations,
+    Strip,
     expected_ink,
     measured,
     smoothed,
+    stations,
 )
 from tmm_sheets.drawing.marks import Points
 
@@ -51,34 +53,27 @@ BARE, BARE_LENGTH = 0.35, 2.5
 """Share of an element without ink, and mm of that not hidden by others, beyond which it is missing."""
 
 
-def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, owners: Owners, level: float) -> InkTrace:
+def displaced(e: Element, left: Any, wiped: Any, paper: Paper) -> InkTrace:
     """The trace of an element that was not found in its own place.
 
     Parameters
     ----------
-    e, s
-        The element and its stations.
+    e, paper
+        The element, and what shows.
     left
         The rectified picture without what was found so far.
     wiped
         Where that was, 255 there.
-    ink
-        The rectified picture.
-    owners
-        Who is drawn where.
-    level
-        Darkness of ink.
     """
-    offsets, at = _search_strip(e, s)
-    expected = expected_ink(e)
+    strip = _search_strip(e, paper)
+    expected, offsets, at = expected_ink(e), strip.offsets, pixels(strip.places)
     about = np.abs(offsets) <= 0.5
-    near = s.points[:, None] + s.normals[:, None] * offsets[about]
-    here = smoothed(sample(ink, at[:, about]), owners.others(e.number, near)) > level
+    here = Strip(e, strip.stations, offsets[about], paper).profile > paper.level
     if here[:, np.abs(offsets[about]) <= 0.2].any(1).mean() > LARGELY * expected:
         # There is ink where it belongs, only it cannot be told from others'.
         return InkTrace(e, "dense", covered=float(here.any(1).mean()), at=e.points)
     profile, unknown = smoothed(sample(left, at)), sample(wiped, at) > 100
-    found = _best_displaced(e, s, profile, unknown, offsets, level)
+    found = _best_displaced(strip, profile, unknown, paper.level)
     if found is not None:
         return found
     # Hidden in its own place, or nowhere?
@@ -89,24 +84,23 @@ def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, owners: 
     return InkTrace(e, "dense", covered=float(1 - bare.mean()), at=e.points)
 
 
-def better_match(t: InkTrace, s: Stations, left: Any, wiped: Any, ink: Any, owners: Owners, level: float) -> InkTrace | None:
+def better_match(t: InkTrace, left: Any, wiped: Any, paper: Paper) -> InkTrace | None:
     """The trace of an element that is darker or more complete elsewhere than what was taken for it in its own place, or None.
 
-    ``t`` and ``s`` are its trace there and its stations, ``owners`` tells who is drawn where; the rest is as for :func:`displaced`.
+    ``t`` is its trace there, the rest is as for :func:`displaced`.
     """
-    offsets, at = _search_strip(t.element, s)
-    near = s.points[:, None] + s.normals[:, None] * offsets
-    drawn = owners.others(t.element.number, near)
-    others = cv2.dilate(drawn.astype(np.uint8), np.ones((1, BAND), np.uint8)) > 0
-    own = (np.abs(offsets) <= BAND / 2 * STEP) & ~others  # wiped out for its own sake
-    profile = smoothed(np.where(own, sample(ink, at), sample(left, at)), drawn)
+    strip = _search_strip(t.element, paper)
+    at = pixels(strip.places)
+    others = cv2.dilate(strip.others.astype(np.uint8), np.ones((1, BAND), np.uint8)) > 0
+    own = (np.abs(strip.offsets) <= BAND / 2 * STEP) & ~others  # wiped out for its own sake
+    profile = smoothed(np.where(own, sample(paper.ink, at), sample(left, at)), strip.others)
     unknown = ~own & (sample(wiped, at) > 100)
     if t.darkness:
-        darker = _best_displaced(t.element, s, profile, unknown, offsets, DARKER * t.darkness)
+        darker = _best_displaced(strip, profile, unknown, DARKER * t.darkness)
         if darker is not None and darker.covered >= NEARLY_ALL:
             return darker
     for least in (KNOWN, PARTED):
-        fuller = _best_displaced(t.element, s, profile, unknown, offsets, level, least)
+        fuller = _best_displaced(strip, profile, unknown, paper.level, least)
         if fuller is None or fuller.covered < max(NEARLY_ALL, t.covered + FULLER):
             continue
         if fuller.darkness >= t.darkness / DARKER if least == KNOWN else swung(fuller) and fuller.darkness >= PALE * t.darkness:
@@ -122,18 +116,16 @@ def swung(t: InkTrace) -> bool:
     return bool(off.min() <= PIVOT < off.max() / 2)
 
 
-def beside(t: InkTrace, s: Stations, ink: Any, lines: Any, taken: Any, owners: Owners, level: float) -> InkTrace | None:
+def beside(t: InkTrace, lines: Any, taken: Any, paper: Paper) -> InkTrace | None:
     """The trace of a straight line that lies in one stroke with others, where ink of none has its whole length beside; or None.
 
-    ``lines`` is where what was found is drawn, 255 there, ``taken`` the same with room to spare; the rest is as for
-    :func:`rather_best_displaced`.
+    ``lines`` is where what was found is drawn, 255 there, ``taken`` the same with room to spare.
     """
-    offsets, at = _search_strip(t.element, s)
-    drawn = owners.others(t.element.number, s.points[:, None] + s.normals[:, None] * offsets)
-    profile = smoothed(sample(ink, at), drawn)
+    strip, level = _search_strip(t.element, paper), paper.level
+    s, offsets, drawn, profile, at = strip.stations, strip.offsets, strip.others, strip.profile, pixels(strip.places)
     apart = _reachable_places(profile, sample(lines, at, nearest=True) > 0, drawn, offsets, level)
     unknown = np.where(np.abs(offsets) <= BROAD, ~apart & (profile > level), sample(taken, at) > 100)
-    found = _best_displaced(t.element, s, np.where(unknown, 0, profile), unknown, offsets, level, PARTED)
+    found = _best_displaced(strip, np.where(unknown, 0, profile), unknown, level, PARTED)
     if found is None or found.at is None or found.covered < NEARLY_ALL or found.deviation < LEFT:
         return None
     begin, end = found.at - t.element.points
@@ -174,16 +166,15 @@ def _reachable_places(profile: Any, found: Any, drawn: Any, offsets: Floats, lev
     return out
 
 
-def _search_strip(e: Element, s: Stations) -> tuple[Floats, Any]:
-    """How far an element is sought to either side, mm, and the places there, pixels."""
+def _search_strip(e: Element, paper: Paper) -> Strip:
+    """An element with the ink as far as it is sought to either side."""
     reach = min(FARTHEST_OFF, max(0.6 * e.length, 3.0))
-    offsets = np.arange(-reach, reach + STEP / 2, STEP)
-    return offsets, pixels(s.points[:, None] + s.normals[:, None] * offsets)
+    return Strip(e, stations(e, e.kind != "line"), np.arange(-reach, reach + STEP / 2, STEP), paper)
 
 
-def _best_displaced(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Floats, level: float,
-                    least: float = KNOWN) -> InkTrace | None:
+def _best_displaced(strip: Strip, profile: Any, unknown: Any, level: float, least: float = KNOWN) -> InkTrace | None:
     """The element where the ink that is left fits it best, None when nothing fits; ``least`` of it, a share, must be seen."""
+    e, s, offsets = strip.element, strip.stations, strip.offsets
     expected, reach = expected_ink(e), float(offsets[-1])
     hit = _hit(profile, level)
     base = s.base()

@@ -32,7 +32,7 @@ from tmm_sheets.compare.photo.traces import (
     SAMPLING,
     STEP,
     InkTrace,
-    Owners,
+    Paper,
     open_line,
 )
 from tmm_sheets.drawing.marks import Points
@@ -71,21 +71,15 @@ class _Way(NamedTuple):
     """Whether the sheet itself interrupts the line there, behind lettering."""
 
 
-def with_ends(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any, level: float) -> list[InkTrace]:
+def with_ends(traces: Sequence[InkTrace], paper: Paper) -> list[InkTrace]:
     """Find the ends of lines.
 
     Parameters
     ----------
     traces
         Those of open lines; the others are left as they are.
-    ink
-        The rectified picture.
-    owners
-        Who is drawn where; displaced elements also where they were found.
-    words
-        A picture of the places of lettering, 255 there.
-    level
-        Darkness of ink.
+    paper
+        What shows.
 
     Returns
     -------
@@ -100,11 +94,11 @@ def with_ends(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any, 
     p, n = np.concatenate([w.places for w in ways])[:, None], np.concatenate([w.normals for w in ways])[:, None]
     numbers = np.concatenate([np.full(len(w.t), w.element.number) for w in ways])[:, None]
     aside = np.concatenate([np.full(len(w.t), 0.5 * line_type(w.element.style).width + CLEAR) for w in ways])[:, None]
-    across = sample(ink, pixels(np.hstack((p + n * ASIDE, p - n * aside, p + n * aside))))
-    hidden = owners.others(numbers, p + n * BESIDE).any(1) | (sample(words, pixels(p[:, 0])) > 100)
-    crowded = owners.others(numbers, p + n * CROWDED).any(1) & owners.others(numbers, p - n * CROWDED).any(1)
+    across = paper.dark(np.hstack((p + n * ASIDE, p - n * aside, p + n * aside)))
+    hidden = paper.owners.others(numbers, p + n * BESIDE).any(1) | (sample(paper.words, pixels(p[:, 0])) > 100)
+    crowded = paper.owners.others(numbers, p + n * CROWDED).any(1) & paper.owners.others(numbers, p - n * CROWDED).any(1)
     parts = (np.split(part, cuts) for part in (across, hidden, crowded))
-    ends = [_end(w, a, h, c, level) for w, a, h, c in zip(ways, *parts, strict=True)]
+    ends = [_end(w, a, h, c, paper.level) for w, a, h, c in zip(ways, *parts, strict=True)]
     for i, k in enumerate(chosen):
         out[k] = replace(traces[k], ends=(ends[2 * i], ends[2 * i + 1]))
     return out
@@ -235,20 +229,10 @@ def joint(e: Element) -> bool:
     return e.kind == "circle" and bool(e.step) and not e.fills and RADII[0] < e.radius < RADII[1]
 
 
-def with_edges(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any) -> list[InkTrace]:
-    """The traces, those of joints that were found in their places with the radius and the middle that their outer edges have.
-
-    Parameters
-    ----------
-    traces
-        What was found.
-    ink, words
-        The rectified picture, and a picture of the places of lettering, 255 there.
-    owners
-        Who is drawn where.
-    """
+def with_edges(traces: Sequence[InkTrace], paper: Paper) -> list[InkTrace]:
+    """The traces, those of joints that were found in their places with the radius and the middle that their outer edges have."""
     some = [t for t in traces if joint(t.element) and t.status in ("measured", "dense", "shared")]
-    seen = {t.element.number: edge for t in some if (edge := _edges(t.element, ink, owners, words)) is not None}
+    seen = {t.element.number: edge for t in some if (edge := _edges(t.element, paper)) is not None}
     usual = max(float(np.median([growth for growth, _ in seen.values()])), 0.0) if len(seen) > FEW else 0.0
     return [_by_edge(t, seen[t.element.number], usual) if t.element.number in seen else t for t in traces]
 
@@ -265,15 +249,15 @@ def _by_edge(t: InkTrace, edge: tuple[float, complex], usual: float) -> InkTrace
     return replace(t, status="measured", shift=shift, growth=growth, deviation=max(abs(growth), abs(shift)), at=at, free=1.0)
 
 
-def _edges(e: Element, ink: Any, owners: Owners, words: Any) -> tuple[float, complex] | None:
+def _edges(e: Element, paper: Paper) -> tuple[float, complex] | None:
     """How much too far out the outer edge of a joint is, and how far aside its middle, mm; None where too little of it is seen, or
     no circle.
     """
     far = np.arange(0, e.radius + BEYOND, STEP)
     places = e.centre + RAYS[:, None] * far
-    others = owners.others(e.number, places) | (sample(words, pixels(places)) > 100)
+    others = paper.foreign(e.number, places)
     near = cv2.dilate(np.vstack((others[-ROOM:], others, others[:ROOM])).astype(np.uint8), np.ones((ROOM, ROOM), np.uint8)) > 0
-    dark = sample(ink, pixels(places)).astype(np.float64)
+    dark = paper.dark(places).astype(np.float64)
     within = (far > e.radius - INWARDS) & (far < e.radius + OUTWARDS)
     edge, half = np.array([_edge(ray, within) for ray in dark]) * STEP, line_type(e.style).width / 2
     moved_by = (far > edge[:, None] - half - WITHIN) & (far < edge[:, None] + AFTER)
@@ -351,18 +335,18 @@ ASTRAY = 2.0
 """mm; of a line that was drawn askew one end is no farther off."""
 
 
-def resolve_overlaps(found: Sequence[InkTrace], ink: Any, owners: Owners, words: Any, level: float) -> set[int]:
+def resolve_overlaps(found: Sequence[InkTrace], paper: Paper) -> set[int]:
     """Numbers of the elements that were found by ink that is rather another's.
 
     Parameters
     ----------
     found
         Traces of lines by ink beside the strokes in which they belong.
-    ink, owners, words, level
-        As for :func:`~tmm_sheets.compare.photo.line_ends.with_ends`.
+    paper
+        What shows.
     """
     groups: list[list[InkTrace]] = []
-    for t in with_ends(found, ink, owners, words, level):
+    for t in with_ends(found, paper):
         home = next((g for g in groups if any(one_line(t, other) for other in g)), None)
         if home is None:
             groups.append([t])

@@ -7,15 +7,14 @@ ought to be. Where it leaves the stroke there is a second ridge beside it that b
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.lost_ink import Mask, at
+from tmm_sheets.compare.photo.lost_ink import at
 from tmm_sheets.compare.photo.profiles import HALF, LARGELY, MOSTLY, NEARLY_ALL, WHOLE, fit, peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
 from tmm_sheets.compare.photo.traces import (
@@ -23,8 +22,8 @@ from tmm_sheets.compare.photo.traces import (
     PALE,
     STEP,
     InkTrace,
-    Owners,
-    Stations,
+    Paper,
+    Strip,
     expected_ink,
     measured,
     open_line,
@@ -36,7 +35,6 @@ from tmm_sheets.drawing.styles import line_type
 
 NEAR = 2.0  # mm from its own place within which an element is sought
 OFFSETS = np.arange(-NEAR - 1, NEAR + 1 + STEP / 2, STEP)
-AT_ONCE = 3000  # stations sampled in one call; many more do not fit into the processor's cache
 APART = 4  # steps of bare paper that separate two lines to the eye
 BROAD = 18  # steps; a wider stroke is not measured as one
 OFF = 0.6  # mm; a line farther off its place is measured a second time
@@ -49,50 +47,19 @@ CLEAR, WITHIN = 0.3, 0.3
 """mm between the edges of a line and of the next beyond which ink is nobody else's, and mm beside its place where it may be."""
 
 
-class Strip(NamedTuple):
-    """An element with the ink across it at :data:`OFFSETS` and where others are drawn there, (stations, offsets)."""
-
-    element: Element
-    stations: Stations
-    profile: Any
-    others: Any
-
-
-def strips(elements: Sequence[Element], ink: Any, owners: Owners, hidden: Mask) -> Iterator[Strip]:
-    """The strips of elements, in order, sampled many at a time; without the stations that are ``hidden``."""
+def strip_of(e: Element, paper: Paper) -> Strip:
+    """An element with the ink about its place, without the stations that are hidden."""
     # A curve in its place is off here and there rather than too large.
-    waiting: list[tuple[Element, Stations]] = []
-    for e in elements:
-        waiting.append((e, _not_hidden(stations(e, e.kind in ("circle", "arc")), hidden)))
-        if sum(len(s.points) for _, s in waiting) > AT_ONCE:
-            yield from _strips_across(waiting, ink, owners)
-            waiting = []
-    yield from _strips_across(waiting, ink, owners)
+    s = stations(e, e.kind in ("circle", "arc"))
+    here = ~at(s.points, paper.hidden)
+    if 0 < here.sum() < len(here):  # what is seen there is the edge of what hides the others
+        s = s._replace(points=s.points[here], normals=s.normals[here], raw=s.raw[here])
+    return Strip(e, s, OFFSETS, paper)
 
 
-def _not_hidden(s: Stations, hidden: Mask) -> Stations:
-    """Those stations that are not hidden, if there are any: what is seen there is the edge of what hides the others."""
-    here = ~at(s.points, hidden)
-    return s._replace(points=s.points[here], normals=s.normals[here], raw=s.raw[here]) if 0 < here.sum() < len(here) else s
-
-
-def _strips_across(some: Sequence[tuple[Element, Stations]], ink: Any, owners: Owners) -> Iterator[Strip]:
-    if not some:
-        return
-    counts = [len(s.points) for _, s in some]
-    p, n = np.concatenate([s.points for _, s in some]), np.concatenate([s.normals for _, s in some])
-    places = p[:, None] + n[:, None] * OFFSETS
-    profile, others = sample(ink, pixels(places)), owners.others(np.repeat([e.number for e, _ in some], counts)[:, None], places)
-    first = 0
-    for (e, s), count in zip(some, counts, strict=True):
-        here = slice(first, first + count)
-        yield Strip(e, s, smoothed(profile[here], others[here]), others[here])
-        first += count
-
-
-def in_place(strip: Strip, level: float) -> InkTrace | None:
-    """The trace of an element in its own place, or None when it is not there; ``level`` is the darkness of ink."""
-    e, s, profile, others = strip
+def in_place(strip: Strip) -> InkTrace | None:
+    """The trace of an element in its own place, or None when it is not there."""
+    e, s, profile, others, level = strip.element, strip.stations, strip.profile, strip.others, strip.paper.level
     width = line_type(e.style).width
     # Distance of the next known line, and how far to look; where another line runs along, nothing can be told.
     own = np.abs(OFFSETS) <= width / 2 + 0.25
@@ -107,7 +74,7 @@ def in_place(strip: Strip, level: float) -> InkTrace | None:
         # Others lie beside or on it nearly everywhere: whether it is there can be told, but hardly where.
         inked = (np.where(np.abs(OFFSETS) <= reach[:, None], profile, 0).max(1) > level).mean()
         if inked > 0.75 * expected:
-            return _shared(strip, o, use, level) or InkTrace(e, "dense", covered=float(inked), at=e.points)
+            return _shared(strip, o, use) or InkTrace(e, "dense", covered=float(inked), at=e.points)
         return None
     if use.sum() < 3 or use.sum() < 0.45 * expected * free.sum():
         return None
@@ -149,9 +116,9 @@ def uncovered(strip: Strip) -> Any:
     return np.where(clear, np.where(np.abs(OFFSETS) <= WITHIN, strip.profile, 0).max(1), np.nan)
 
 
-def _shared(strip: Strip, o: Floats, use: Any, level: float) -> InkTrace | None:
+def _shared(strip: Strip, o: Floats, use: Any) -> InkTrace | None:
     """The trace of an element in one stroke with others: the stroke against where all of them together ought to be."""
-    e, s, profile, others = strip
+    e, s, profile, others = strip.element, strip.stations, strip.profile, strip.others
     width = line_type(e.style).width
     meant = others | (np.abs(OFFSETS) <= width / 2)
     closed = cv2.morphologyEx(meant.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((1, APART + 1), np.uint8)) > 0
@@ -167,7 +134,7 @@ def _shared(strip: Strip, o: Floats, use: Any, level: float) -> InkTrace | None:
     weight = np.clip(dark - 0.25 * top[:, None], 0, None)
     seen = (weight * OFFSETS).sum(1) / np.maximum(weight.sum(1), 1e-9)
     ought = (inside & meant) @ OFFSETS / np.maximum((inside & meant).sum(1), 1)
-    able = stroke & (top > level)
+    able = stroke & (top > strip.paper.level)
     offsets = np.where(use, o, seen - ought)
     able |= use
     if able.sum() < max(4, SHARED * len(able)):
@@ -224,19 +191,13 @@ BACK = 0.35
 line is all that shows of it, and its direction is known by that only."""
 
 
-def narrow_divergence(t: InkTrace, ink: Any, words: Any, owners: Owners, usual: float) -> InkTrace | None:
+def narrow_divergence(t: InkTrace, paper: Paper, usual: float) -> InkTrace | None:
     """The trace of a straight line that parts from its stroke about one end, or None.
 
     Parameters
     ----------
-    t
-        The trace of a line in one stroke with others.
-    ink
-        The rectified picture.
-    words
-        Where lettering belongs, 255 there.
-    owners
-        Who is drawn where.
+    t, paper
+        The trace of a line in one stroke with others, and what shows.
     usual
         How dark lines of its width usually are.
     """
@@ -246,10 +207,10 @@ def narrow_divergence(t: InkTrace, ink: Any, words: Any, owners: Owners, usual: 
     way = (e.points[1] - e.points[0]) / e.length
     run = np.linspace(0, 1, min(int(e.length / ALONG_STEP), MOST_PLACES) + 1)
     places = (e.points[0] + run * e.length * way)[:, None] + 1j * way * AWAY
-    others = owners.others(e.number, places)
-    profile = smoothed(sample(ink, pixels(places)), others).astype(np.float32)
+    others = paper.owners.others(e.number, places)
+    profile = smoothed(paper.dark(places), others).astype(np.float32)
     aside = others & (np.abs(AWAY) > 0.5 * line_type(e.style).width + CLOSE * STEP)  # the stroke itself is no other's
-    unknown = _widened(aside, CLOSE) | (sample(words, pixels(places)) > 100)
+    unknown = _widened(aside, CLOSE) | (sample(paper.words, pixels(places)) > 100)
     shown = ~_widened(unknown, ABOUT)
     for left in (True, False):
         ridge, depth = ridges(profile if left else profile[:, ::-1], HALF * usual)

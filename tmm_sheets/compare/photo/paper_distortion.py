@@ -15,12 +15,12 @@ from typing import Any, NamedTuple
 import cv2
 import numpy as np
 
-from tmm_sheets.compare.elements import Element, grown, sampled
+from tmm_sheets.compare.elements import Element, sampled
 from tmm_sheets.compare.photo.lost_ink import Mask, at
 from tmm_sheets.compare.photo.map_fit import LENS, Seen, camera_foot, camera_height, lens_and_homography
-from tmm_sheets.compare.photo.profiles import LARGELY, fit, follow, ink_levels, peaks, pixels, runs, sample
+from tmm_sheets.compare.photo.profiles import LARGELY, fit, follow, peaks, runs
 from tmm_sheets.compare.photo.sheet_map import AWAY, FRAME, PAPER, Floats, Map, drawn_in, spline_base, spline_nodes
-from tmm_sheets.compare.photo.traces import SAMPLING, Owners, Stations, fill, measurable, similarity_base
+from tmm_sheets.compare.photo.traces import SAMPLING, Paper, Stations, measurable, similarity_base
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell
 
@@ -165,23 +165,17 @@ class TracedLine(NamedTuple):
     bent: Any
 
 
-def trace_lines(elements: Sequence[Element], ink: Any, level: float, hidden: Mask) -> list[TracedLine]:
+def trace_lines(elements: Sequence[Element], ink: Any, hidden: Mask) -> list[TracedLine]:
     """The lines of a rectified sheet that can be followed."""
     chosen, p, n, real = _pieces(elements)
     if not chosen:
         return []
-    owners = Owners(*ink.shape)
-    for e in elements:
-        owners.add(e, e.points)
+    paper = Paper.of(elements, ink, hidden)
     of = np.repeat([e.number for e, _ in chosen], [count for _, count in chosen])
     places = p[..., None] + n[..., None] * OFFSETS
-    profile = sample(ink, pixels(places)).astype(np.float32)
+    profile = paper.dark(places).astype(np.float32)
     # A line of lettering is as straight as one of ink, and as near to the lines of a table.
-    words = np.zeros_like(ink)
-    for e in elements:
-        if e.kind == "text":
-            fill(words, grown(e.points, 0.5))
-    others = owners.others(of[:, None, None], places) | (sample(words, pixels(places), nearest=True) > 0)
+    others = paper.foreign(of[:, None, None], places)
     others &= np.abs(OFFSETS) > 0.45
     # Half way to the next line known on either side.
     below = np.where(others & (OFFSETS < 0), -OFFSETS, 2 * REACH).min(-1)
@@ -189,9 +183,9 @@ def trace_lines(elements: Sequence[Element], ink: Any, level: float, hidden: Mas
     known = (np.minimum(below, above) > NEAR) & real & ~at(p, hidden)
     clear = (0.5 * below[..., None] >= -OFFSETS) & (0.5 * above[..., None] >= OFFSETS) & known[..., None]
     profile = np.where(clear, profile, 0)
-    way = OFFSETS[follow(np.minimum(profile, 2 * level), 2)]
+    way = OFFSETS[follow(np.minimum(profile, 2 * paper.level), 2)]
     off, strength = (part.reshape(way.shape) for part in peaks(profile.reshape(-1, len(OFFSETS)), OFFSETS, way.ravel(), 0.6, 0.5))
-    seen = strength > level
+    seen = strength > paper.level
     out: list[TracedLine] = []
     first = 0
     for e, count in chosen:
@@ -246,13 +240,13 @@ def over_bulges(
     m: Map, ink: Any, elements: Sequence[Element], hidden: Mask, straighten: Callable[[Map], Any],
 ) -> tuple[Map, Any, Points]:
     """The map corrected where the paper bulges, the picture it straightens, and places where it bulges still."""
-    places = local_distortion(lines := trace_lines(elements, ink, ink_levels(ink)[1], hidden))
+    places = local_distortion(lines := trace_lines(elements, ink, hidden))
     if not len(places):
         return m, ink, places
     for _ in range(ROUNDS):
         m = _corrected_map(m, lines, places)
         ink = straighten(m)
-        lines = trace_lines(elements, ink, ink_levels(ink)[1], hidden)
+        lines = trace_lines(elements, ink, hidden)
         left = local_distortion(lines)
         places = np.concatenate((places, left))
     return m, ink, left

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
 import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown, sampled
-from tmm_sheets.compare.photo.profiles import MOSTLY, SCALE, ProfileLines, pixels, sample
+from tmm_sheets.compare.photo.profiles import MOSTLY, SCALE, ProfileLines, ink_levels, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import PAPER, Floats
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
@@ -204,6 +205,7 @@ def measured(e: Element, s: Stations, o: Floats, use: Any, covered: float) -> In
 
 THIN = 0.2  # mm, width of strokes of hatchings, bars and leaders
 PIECE = 25.0  # mm of a line painted at once
+WORDS = 0.3  # mm about lettering where letters may stand
 
 
 class Owners:
@@ -246,6 +248,66 @@ class Owners:
         """Whether an element of another number is at places, mm; ``numbers`` is one number or an array that broadcasts."""
         found = sample(self.picture, pixels(places), nearest=True)
         return (found != 0) & (found != numbers)
+
+
+@dataclass(frozen=True)
+class Paper:
+    """A rectified sheet as the evidence of what is drawn on it.
+
+    Attributes
+    ----------
+    ink : the rectified picture
+    owners : who is drawn where; displaced elements also where they were found
+    words : a picture of the places of lettering, 255 there
+    hidden : where the sheet does not show
+    level, single : darkness of ink, as the mean of several places along a line and of a single pixel
+    """
+
+    ink: Any
+    owners: Owners
+    words: Any
+    hidden: Any
+    level: float
+    single: float
+
+    @classmethod
+    def of(cls, elements: Iterable[Element], ink: Any, hidden: Any) -> Paper:
+        """The paper of a rectified picture and all that belongs on the sheet."""
+        single, level = ink_levels(ink)
+        out = cls(ink, Owners(*ink.shape), np.zeros_like(ink), hidden, level, single)
+        for e in elements:
+            out.owners.add(e, e.points)
+            if e.kind == "text":
+                fill(out.words, grown(e.points, WORDS))
+        return out
+
+    def dark(self, places: Points) -> Any:
+        """How dark places are, mm."""
+        return sample(self.ink, pixels(places))
+
+    def foreign(self, number: Any, places: Points) -> Any:
+        """Whether ink at places may be that of letters or of another than the element of this number."""
+        return self.owners.others(number, places) | (sample(self.words, pixels(places)) > 100)
+
+
+class Strip:
+    """An element with the ink across it at ``offsets``, mm, and where others are drawn there, (stations, offsets): looked at when
+    asked for.
+    """
+
+    def __init__(self, e: Element, s: Stations, offsets: Floats, paper: Paper) -> None:
+        self.element, self.stations, self.offsets, self.paper = e, s, offsets, paper
+        self.places = s.points[:, None] + s.normals[:, None] * offsets
+
+    @cached_property
+    def others(self) -> Any:
+        """Where others are drawn."""
+        return self.paper.owners.others(self.element.number, self.places)
+
+    @cached_property
+    def profile(self) -> Any:
+        """The ink, averaged over neighbours along the line."""
+        return smoothed(self.paper.dark(self.places), self.others)
 
 
 def _pieces(points: Points) -> Iterator[Points]:

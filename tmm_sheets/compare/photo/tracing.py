@@ -27,8 +27,8 @@ from tmm_sheets.compare.photo.arrow_heads import with_heads
 from tmm_sheets.compare.photo.displacement import beside, better_match, displaced, extra_ink, without_creases
 from tmm_sheets.compare.photo.line_ends import ignore_junction_ends, resolve_overlaps, with_edges, with_ends
 from tmm_sheets.compare.photo.lost_ink import Mask, at, in_pieces, share_hidden, torn_widths, widened
-from tmm_sheets.compare.photo.own_place import Strip, in_place, narrow_divergence, strips, uncovered
-from tmm_sheets.compare.photo.profiles import HALF, LITTLE, MOSTLY, NEARLY_ALL, NO_GREY, SCALE, WHOLE, ink_levels, pixels, sample
+from tmm_sheets.compare.photo.own_place import in_place, narrow_divergence, strip_of, uncovered
+from tmm_sheets.compare.photo.profiles import HALF, LITTLE, MOSTLY, NEARLY_ALL, NO_GREY, SCALE, WHOLE, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.small_marks import WRITTEN, displaced_dots
 from tmm_sheets.compare.photo.traces import (
@@ -40,7 +40,9 @@ from tmm_sheets.compare.photo.traces import (
     ExtraInk,
     InkTrace,
     Owners,
+    Paper,
     Status,
+    Strip,
     expected_ink,
     fill,
     fixed,
@@ -48,7 +50,6 @@ from tmm_sheets.compare.photo.traces import (
     paint,
     painted,
     seen_at,
-    stations,
     wipe_found,
     wipe_small,
 )
@@ -84,17 +85,14 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     -------
     A trace of each element in their order, and extra ink, the longest first.
     """
-    level, pale = ink_levels(ink)
-    owners = Owners(*ink.shape)
-    for e in elements:
-        owners.add(e, e.points)
     if hidden is None:
         hidden = np.zeros((1, 1), bool)
+    paper = Paper.of(elements, ink, hidden)
     out_of_sight = {e.number: InkTrace(e, "hidden") for e in elements if share_hidden(e, hidden) > OUT_OF_SIGHT}
     shown = [e for e in elements if e.number not in out_of_sight]
     small = [e for e in shown if not measurable(e)]
     dots = np.array([e.centre for e in small if e.kind == "circle" and e.fills], complex)
-    found, absent, alone = _in_their_places([e for e in shown if measurable(e)], dots, ink, owners, pale, hidden)
+    found, absent, alone = _in_their_places([e for e in shown if measurable(e)], dots, paper)
     wiped = np.zeros_like(ink)
     for e in small:
         wipe_small(wiped, e)
@@ -111,32 +109,30 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         covers = cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) * np.uint8(255)
         left[covers > 0] = 0
     left[wiped > 0] = 0
-    found += _displaced(absent, ink, left, wiped, owners, pale)
-    found = doubted(found, alone, ink, left, wiped, owners, pale)
-    found = _beside_strokes(found, small, ink, owners, pale)
-    words = _places_of_lettering(elements, ink)
-    found = with_edges(found, ink, owners, words)
+    found += _displaced(absent, left, wiped, paper)
+    found = doubted(found, alone, left, wiped, paper)
+    found = with_edges(_beside_strokes(found, small, paper), paper)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
-    ended = ignore_junction_ends(with_ends(open_lines, ink, owners, words, pale), elements)
+    ended = ignore_junction_ends(with_ends(open_lines, paper), elements)
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
     lines = {t.element.number: t for t in (*found, *ended)}
-    headed = with_heads(list(lines.values()), ink, owners, words, hidden)
-    out = {t.element.number: t for t in headed} | _traces_of_small(small, found, ink, pale) | out_of_sight
+    headed = with_heads(list(lines.values()), paper)
+    out = {t.element.number: t for t in headed} | _traces_of_small(small, found, paper) | out_of_sight
     unseen = [t for t in out.values() if t.status in ("absent lettering", "part of lettering")
               or (t.status == "lettering" and t.covered < GAPPY)]  # fmt: skip
-    out |= {t.element.number: t for t in small_marks.with_places(unseen, found, small, ink, covers, level)}
-    out |= {t.element.number: t for t in _dots(small, headed, ink, words, hidden)}
+    out |= {t.element.number: t for t in small_marks.with_places(unseen, found, small, ink, covers, paper.single)}
+    out |= {t.element.number: t for t in _dots(small, headed, paper)}
     near = {"missing": widened(hidden)} | dict.fromkeys(("absent lettering", "part of lettering"), widened(hidden, WASHED_OUT))
     for t in [t for t in out.values() if t.status in near]:
         if share_hidden(t.element, near[t.status]) > LITTLE:
             out[t.element.number] = InkTrace(t.element, "hidden")
     for e in elements:  # a hand may have written here
         if e.kind == "text":
-            fill(words, grown(e.points, 0.8 * e.height + 1.0))
-    left = without_creases(left, ink, level)
+            fill(paper.words, grown(e.points, 0.8 * e.height + 1.0))
+    left = without_creases(left, ink, paper.single)
     tears = torn_widths(found)
     out |= {t.element.number: replace(t, pieces=True) for t in out.values() if in_pieces(t, tears)}
-    return [out[e.number] for e in elements], extra_ink(left, level, words, wiped)
+    return [out[e.number] for e in elements], extra_ink(left, paper.single, paper.words, wiped)
 
 
 def _shown_ends(t: InkTrace, hidden: Mask) -> tuple[float, float]:
@@ -153,7 +149,7 @@ class _Alone(NamedTuple):
 
 
 def _in_their_places(
-    lines: Sequence[Element], dots: Points, ink: Any, owners: Owners, level: float, hidden: Mask,
+    lines: Sequence[Element], dots: Points, paper: Paper,
 ) -> tuple[list[InkTrace], list[Element], dict[int, _Alone]]:
     """Traces of the lines that are where they belong, the lines that are not, and the places of the former where they are alone, by
     number, if those may show that others' ink was taken for theirs; ``dots`` are middles.
@@ -161,8 +157,8 @@ def _in_their_places(
     found: list[InkTrace] = []
     absent: list[Element] = []
     alone: dict[int, _Alone] = {}
-    for strip in strips(lines, ink, owners, hidden):
-        t = in_place(strip, level)
+    for strip in (strip_of(e, paper) for e in lines):
+        t = in_place(strip)
         if t is None:
             absent.append(strip.element)
         else:
@@ -192,15 +188,15 @@ def alone_on(strip: Strip, dots: Points, found: bool = True) -> _Alone | None:
     return None
 
 
-def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owners: Owners, level: float) -> list[InkTrace]:
+def _displaced(absent: Sequence[Element], left: Any, wiped: Any, paper: Paper) -> list[InkTrace]:
     """Traces of lines that are not in their places, the longest first; each is wiped out where it is found."""
     found = []
     for e in sorted(absent, key=lambda e: -e.length):
-        t = displaced(e, stations(e, e.kind != "line"), left, wiped, ink, owners, level)
+        t = displaced(e, left, wiped, paper)
         if _edge(t):
             t = InkTrace(e, "dense", covered=t.covered, at=e.points)
         found.append(t)
-        _claim(t, left, wiped, owners)
+        _claim(t, left, wiped, paper.owners)
     return found
 
 
@@ -218,7 +214,7 @@ def _edge(t: InkTrace) -> bool:
 
 
 def doubted(
-    found: Sequence[InkTrace], alone: Mapping[int, _Alone], ink: Any, left: Any, wiped: Any, owners: Owners, level: float,
+    found: Sequence[InkTrace], alone: Mapping[int, _Alone], left: Any, wiped: Any, paper: Paper,
 ) -> list[InkTrace]:
     """The traces; those of lines paler than others of their kind, with gaps, or not seen where they are ``alone``, are looked for
     elsewhere once more.
@@ -235,9 +231,9 @@ def doubted(
         if covered:
             t = replace(t, status="covered", covered=0.0, darkness=0.0)
         if covered or (t.darkness and (t.darkness < PALE * dark or t.covered < NEARLY_ALL)):
-            better = better_match(t, stations(t.element, t.element.kind != "line"), left, wiped, ink, owners, level)
+            better = better_match(t, left, wiped, paper)
             if better is not None and not _edge(better) and not (covered and better.darkness < PALE * dark):
-                _claim(better, left, wiped, owners)
+                _claim(better, left, wiped, paper.owners)
                 t = better
         out.append(t)
     return out
@@ -252,29 +248,28 @@ def _usual_darkness(found: Sequence[InkTrace]) -> dict[float, float]:
     return {width: float(np.median(values)) for width, values in widths.items()}
 
 
-def _beside_strokes(found: Sequence[InkTrace], small: Sequence[Element], ink: Any, owners: Owners, level: float) -> list[InkTrace]:
+def _beside_strokes(found: Sequence[InkTrace], small: Sequence[Element], paper: Paper) -> list[InkTrace]:
     """The traces; of lines that cannot be told from others it is seen whether a line like them lies beside."""
     # No more of letters than their places: what stands between their edges and paper on both sides is no letter.
-    words = _places_of_lettering(small, ink)
-    lines = painted(np.zeros_like(ink), seen_at(found), 0)
-    taken = painted(words.copy(), [*((e, e.points) for e in small), *seen_at(found)], ABOUT_INK)
+    lines = painted(np.zeros_like(paper.ink), seen_at(found), 0)
+    taken = painted(paper.words.copy(), [*((e, e.points) for e in small), *seen_at(found)], ABOUT_INK)
     usual = _usual_darkness(found)
     moved: dict[int, InkTrace] = {}
     for t in found:
         if t.element.kind == "line" and (t.status in ("shared", "dense") or t.parts):
-            other = beside(t, stations(t.element, False), ink, lines, taken, owners, level)
+            other = beside(t, lines, taken, paper)
             dark = usual.get(line_type(t.element.style).width, 0.0)
             # Paler lines were rubbed out, or are the edges of others.
             if other is None or other.darkness <= PALE * dark:
-                other = narrow_divergence(t, ink, words, owners, dark) if dark else None
+                other = narrow_divergence(t, paper, dark) if dark else None
             if other is not None:
                 moved[t.element.number] = other
-    for number in resolve_overlaps(list(moved.values()), ink, owners, words, level):
+    for number in resolve_overlaps(list(moved.values()), paper):
         del moved[number]
     return [moved.get(t.element.number, t) for t in found]
 
 
-def _dots(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, words: Any, hidden: Mask) -> list[InkTrace]:
+def _dots(small: Sequence[Element], found: Sequence[InkTrace], paper: Paper) -> list[InkTrace]:
     """Traces of the dots that stand beside their places."""
     dots = [e for e in small if e.kind == "circle" and e.fills]
     usual = _usual_darkness(found)
@@ -282,11 +277,12 @@ def _dots(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, words: 
         return []
     others = [(e, e.points) for e in small if e not in dots]
     others += [(t.element, t.element.points if t.at is None else t.at) for t in found]
-    lines, taken = (painted(np.zeros_like(ink), others, about) for about in (0, ABOUT_INK))
+    lines, taken = (painted(np.zeros_like(paper.ink), others, about) for about in (0, ABOUT_INK))
     painted(taken, [(e, e.points) for e in dots], ABOUT_INK / 2)  # paint widens lines, and grows what is filled to all sides
     straight = [t for t in found if t.element.kind == "line"]
     rods, astray = [t.element.points for t in straight], [t.element.points for t in straight if _is_displaced(t)]
-    return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()), astray, bars(small, ink))
+    return displaced_dots(dots, rods, lines, taken, paper.ink, paper.words, paper.hidden, max(usual.values()), astray,
+                          bars(small, paper.ink))
 
 
 def _is_displaced(t: InkTrace) -> bool:
@@ -308,16 +304,7 @@ def bars(small: Sequence[Element], ink: Any) -> Any:
     return out
 
 
-def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
-    """A picture of where lettering belongs, 255 there."""
-    out = np.zeros_like(ink)
-    for e in elements:
-        if e.kind == "text":
-            fill(out, grown(e.points, 0.3))
-    return out
-
-
-def _traces_of_small(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, level: float) -> dict[int, InkTrace]:
+def _traces_of_small(small: Sequence[Element], found: Sequence[InkTrace], paper: Paper) -> dict[int, InkTrace]:
     """Traces by number of what is not measured: whether there is any ink in the place of lettering; the rest is not looked at.
 
     Each run of letters, a letter or its index, is looked for by itself. The ink of lines that run through its place does not
@@ -328,14 +315,14 @@ def _traces_of_small(small: Sequence[Element], found: Sequence[InkTrace], ink: A
     words = [e for e in small if e.kind == "text" and FRAME.contains(e.middle) and any(map(str.isalnum, e.text))]
     if not words:
         return out
-    others = painted(np.zeros_like(ink), [*seen_at(found), *((e, e.points) for e in small)], ABOUT_INK)
+    others = painted(np.zeros_like(paper.ink), [*seen_at(found), *((e, e.points) for e in small)], ABOUT_INK)
     runs = [(e.number, len(m.text), text_box(m)) for e in words for m in e.marks if isinstance(m, Text)]
     u, v = (t.ravel() for t in np.meshgrid(np.linspace(0, 1, 60), np.linspace(0, 1, 24)))
     corners = np.stack([grown(box, 0.3) for _, _, box in runs])
     a, b, _, d = corners.T[:, :, None]
     places = pixels(a + u * (b - a) + v * (d - a))
     free = sample(others, places, nearest=True) == 0
-    dark = (sample(ink, places) > level) & free
+    dark = (sample(paper.ink, places) > paper.level) & free
     shares = dark.sum(1) / np.maximum(free.sum(1), 1)
     shown, inked = ((part.reshape(-1, 24, 60).sum(1) >= rows) for part, rows in ((free, 8), (dark, 2)))
     columns = (inked & shown).sum(1) / np.maximum(shown.sum(1), 1)
