@@ -13,7 +13,7 @@ from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.photo import arrow_heads, displacement, tracing
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.line_ends import with_edges
-from tmm_sheets.compare.photo.own_place import strip_of
+from tmm_sheets.compare.photo.own_place import in_place, strip_of
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.small_marks import displaced_dots
 from tmm_sheets.compare.photo.traces import InkTrace, Owners, Paper, fill
@@ -734,6 +734,16 @@ def test_a_line_that_others_cover_must_be_seen_to_the_dot_where_it_ends(end, dot
     nothing = np.zeros_like(ink)
     found = tracing.doubted(traces, {} if alone is None else {1: alone}, nothing, nothing, seen)
     assert [t.status for t in found] == [status, "measured"]
+
+
+@pytest.mark.parametrize(("here", "status"), [(140, "dense"), (40, "measured")])
+def test_a_line_whose_own_place_has_ink_too_is_not_off(here, status):
+    """It lies on the flank of a broader stroke, or a millimetre off in bare paper."""
+    e = line(1, CORNER - 20, CORNER + 20, "thin")
+    strip = strip_of(e, Paper.of([e], paper(), np.zeros((1, 1), bool)))
+    across = np.interp(strip.offsets, (-0.5, 0, 0.9, 1.1, 1.4), (0, here, 150, 150, 0))
+    strip.profile = np.tile(across.astype(np.float32), (len(strip.stations.points), 1))
+    assert in_place(strip).status == status
 
 
 @pytest.mark.parametrize(("dark", "status"), [(20, "covered"), (60, "measured")])

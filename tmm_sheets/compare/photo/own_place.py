@@ -43,7 +43,7 @@ ASIDE = 1.4  # mm from its edge to the next line's from which on a piece of a cu
 BRANCHES = 4.0  # mm from one branch of a curve to the next within which neither is surely seen by itself
 LEAST_END = 3.0  # mm of a quarter of a line by which its end is judged
 SHARED = 0.4  # least share of a line free or in one stroke with others for it to be measured with them
-CLEAR, WITHIN = 0.3, 0.3
+CLEAR = 0.3
 """mm between the edges of a line and of the next beyond which ink is nobody else's, and mm beside its place where it may be."""
 
 
@@ -96,6 +96,9 @@ def in_place(strip: Strip) -> InkTrace | None:
         o, strength = peaks(profile, OFFSETS, base @ x, 0.7, 0.5)
         use = (strength > level) & free
         x = fit(base, o, use, 0.3)
+        away, here = np.abs(base @ x) > OFF, np.where(np.abs(OFFSETS) < 1.5 * STEP, profile, 0).max(1)
+        if away.any() and (here > PALE * strength)[away].mean() > LARGELY:  # its own place has ink too: another line, or blur
+            return InkTrace(e, "dense", covered=float(there.mean()), at=e.points)
     t = replace(measured(e, s, base @ x, free, float(share / expected)), darkness=float(np.median(strength[use])),
                 free=float(free.mean()))
     if e.kind == "line" and t.deviation <= OFF and (others & own)[free].any(1).mean() >= MOSTLY:
@@ -113,7 +116,7 @@ def uncovered(strip: Strip) -> Any:
     clear = np.where(strip.others, np.abs(OFFSETS), NEAR).min(1) > CLEAR + width / 2
     for head in strip.element.fills:
         clear &= np.abs(strip.stations.points - head.mean()) > np.abs(head - head.mean()).max()
-    return np.where(clear, np.where(np.abs(OFFSETS) <= WITHIN, strip.profile, 0).max(1), np.nan)
+    return np.where(clear, np.where(np.abs(OFFSETS) <= CLEAR, strip.profile, 0).max(1), np.nan)
 
 
 def _shared(strip: Strip, o: Floats, use: Any) -> InkTrace | None:
