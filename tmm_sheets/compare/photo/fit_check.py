@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.compare.photo.map_fit import APART, Seen, fit_map, patches
-from tmm_sheets.compare.photo.profiles import HALF, LITTLE, MOSTLY, WHOLE, ProfileLines, peaks, profiles
+from tmm_sheets.compare.photo.map_fit import SIZE, Seen, fit_map, patches
+from tmm_sheets.compare.photo.profiles import HALF, LITTLE, MOSTLY, WHOLE, ProfileLines, inked, peaks, profiles
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats, Map
 from tmm_sheets.drawing.marks import Points
 
@@ -35,8 +35,8 @@ HALVES = 1.5
 """Largest distance, mm, between where maps fitted to either half of the sheet have the line between them."""
 MATCH = HALF
 """Least share of a sheet's lines that must be where they belong."""
-IN_PLACE, NEAR = 0.5, 3.0
-"""mm from its place within which a line is in place, or has ink near."""
+IN_PLACE, SOUGHT, NEAR = 0.5, 0.8, 3.0
+"""mm from its place within which a line is in place, is sought, or has ink near."""
 SIDE = MOSTLY
 """Least share of a side's points that must have a line for the side to count as seen."""
 SIDES, SIDES_OF_PLACED = 3, 2
@@ -125,7 +125,7 @@ def check(m: Map, straight: Map, sides: Seen, ink: Any, lines: ProfileLines, lev
     """
     at = straight.to_sheet(m.to_picture(lines.points))
     across = profiles(ink, lines, OFFSETS, at - lines.points, scale)
-    o, strength = peaks(across, OFFSETS, 0.0, 0.8, 0.4)
+    o, strength = peaks(across, OFFSETS, 0.0, SOUGHT, 0.4)
     good = (strength > level) & (np.abs(o) < IN_PLACE)
     some = (across.max(1) > level) & in_picture(m, lines.points)
     seen = Seen(straight.to_picture(at + lines.normals * o), lines.points, lines.normals, good.astype(float))
@@ -155,7 +155,7 @@ def patches_shifted(seen: Seen, m: Map) -> tuple[Points, float]:
     off = np.abs(by) > SHIFTED
     z, by = z[off], by[off]
     # Not side by side only: neighbours share lines.
-    near = np.abs(z[:, None] - z[None]) < 2.3 * APART
+    near = np.abs(z[:, None] - z[None]) < 2.3 * SIZE / 2
     alike = near & (np.abs(by[:, None] - by[None]) < ALIKE)
     some = alike.sum(1) >= TOGETHER
     return z[some], float(np.median(np.abs(by[some]))) if some.any() else 0.0
@@ -173,10 +173,9 @@ def _drift(lines: ProfileLines, o: Floats, good: Any) -> float:
 
 def _on_sides(m: Map, straight: Map, sides: Seen, ink: Any, level: float, scale: float) -> Any:
     """Which points of the frame have a line where the map has them."""
-    at = straight.to_sheet(m.to_picture(sides.sheet))
-    lines = ProfileLines(sides.sheet, sides.normals, np.zeros(len(at), np.int64))
-    o, strength = peaks(profiles(ink, lines, OFFSETS, at - sides.sheet, scale), OFFSETS, 0.0, 0.8, 0.4)
-    return (strength > level) & (np.abs(o) < IN_PLACE)
+    lines = ProfileLines(sides.sheet, sides.normals, np.zeros(len(sides.sheet), np.int64))
+    o, use, _ = inked(ink, lines, SOUGHT, level, straight.to_sheet(m.to_picture(sides.sheet)) - sides.sheet, scale)
+    return use & (np.abs(o) < IN_PLACE)
 
 
 def _displaced_cells(lines: ProfileLines, good: Any, some: Any) -> tuple[Points, int]:

@@ -65,9 +65,9 @@ GLOW = 0.08
 """Share by which a reflection makes the paper brighter than it is about there, from which on it may wash out lines."""
 LOST = 0.12
 """Share of the points of lines under a reflection that must not be seen for it to hide all of them; of others 0.04 are not seen."""
-RIM = 5  # mm about the frame that what hides a sheet reaches
 MARGIN, EDGE = 5, 3
-"""mm by which hidden places are widened, for edges cast shadows; and by which the back of a dog-ear is."""
+"""mm by which hidden places are widened, for edges cast shadows, and about the frame that what hides a sheet reaches; and by which
+the back of a dog-ear is."""
 INSIDE, LEG = 2, (20, 150)
 """mm inside an edge of the paper where it is seen how much of a corner is gone, and the least and most of that."""
 PALE, COVERED = 0.4, 6
@@ -112,7 +112,7 @@ def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: Profi
     # The margin outside the frame is often in the shade of its own edge: only what reaches inside matters.
     labels, total, seen = counted((foreign | absent) & ~outside)
     low, high = ((round(z.real), round(PAPER.y1 - z.imag)) for z in FRAME.corners[[0, 2]].tolist())
-    rim = cv2.rectangle(np.zeros(shape, np.uint8), low, high, 1, RIM) > 0
+    rim = cv2.rectangle(np.zeros(shape, np.uint8), low, high, 1, MARGIN) > 0
     covers = np.isin(np.arange(len(total)), labels[rim]) & (total >= LEAST) & (seen < HALF * total)
     out |= covers[labels] & (labels > 0)
     # What still shows of a reflection that took many lines is too uneven to be judged.

@@ -221,8 +221,8 @@ def _camera(m: Map) -> Floats:
     return np.asarray((g / np.linalg.norm(g[:, 0])).T)
 
 
-SIZE, APART = 90.0, 45.0
-"""Side of a patch and distance of one from the next, mm."""
+SIZE = 90.0
+"""Side of a patch, mm; one is half of it from the next."""
 SCALE = 2.0
 """Pixels per mm in which patches are laid over the picture."""
 REACH = 6.0

@@ -337,8 +337,6 @@ def _patch(points: Points, wide: int) -> tuple[Any, Any, Any]:
     return at, low << 4, np.zeros((int(size[1]), int(size[0])), np.uint8)
 
 
-WRITTEN = 0.9
-"""Margin around lettering that is wiped out, mm: the edges of its letters in a row look like a stroke."""
 ROOM, DENSE_ROOM = 1.4, 2.0
 """Margin around a line that is wiped out, mm; more for one among others, whose ink cannot be told from theirs."""
 
@@ -390,7 +388,7 @@ def wipe_found(picture: Any, t: InkTrace, value: int = 255) -> None:
 def wipe_small(wiped: Any, e: Element) -> None:
     """Wipe out what is not measured (lettering, hatching, dots, short strokes) where it belongs, generously."""
     if e.kind == "text":
-        fill(wiped, grown(e.points, WRITTEN))
+        fill(wiped, grown(e.points, ABOUT_INK))
         for p in e.pieces:
             cv2.polylines(wiped, [fixed(p)], False, 255, round(1.5 * SCALE), cv2.LINE_8, 4)
     else:
