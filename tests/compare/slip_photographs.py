@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -21,8 +22,9 @@ from tests.compare.own_layouts import Drawn, draws_alike, shaped_views, slipped
 from tests.foreign import scene
 from tests.foreign.drawing import Mark
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
-from tmm_sheets.compare.elements import Element, KnownSheet, known_sheet
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, hypotheses
+from tmm_sheets.compare.elements import Element, ElementView, KnownSheet, known_sheet
+from tmm_sheets.compare.findings import FindingRecord
 from tmm_sheets.compare.photo import image
 from tmm_sheets.compare.photo.photo_report import image_report
 from tmm_sheets.compare.placing import Placing
@@ -149,22 +151,29 @@ def main() -> None:
                 (folder / f"{number:03d}.html").write_bytes(page(told, ".html", title))
             outcome = judged(project, known, drawn, seen.built)
             count[outcome] += 1
-            said = {v.name: b.said() for v, b in seen.built.items()}
+            said = {v.name: b.remark.said() for v, b in seen.built.items()}
             print(number, title, f"{taken:.1f} s:", outcome, drawn.slip or "-", said, flush=True)
     print(dict(count))
 
 
-def judged(project: Project, known: KnownSheet, drawn: Drawn, built: dict) -> str:
+def judged(project: Project, known: KnownSheet, drawn: Drawn, built: Mapping[ElementView, FindingRecord]) -> str:
     """What was told of a photograph."""
-    told = [b.mistake for b in built.values() if isinstance(b.mistake, Hypothesis)]
+    told = [b for b in built.values() if "kind" in b.beside]
     if drawn.slip is None:
         return "sound, named" if built else "sound, nothing named"
-    for some, outcome in ((told, "named"), ([h for b in built.values() for h in b.alike], "named after or")):
-        if any(h.kind == drawn.slip.kind and h.step.path in {s.path for s in drawn.slip.ways} for h in some):
-            return outcome
-    if any(draws_alike(project, known, h, drawn) for h in told):
+    if any(b.beside["kind"] == drawn.slip.kind and b.step in {s.path for s in drawn.slip.ways} for b in told):
+        return "named"
+    if any(draws_alike(project, known, h, drawn) for b in told for h in meant(project, b)):
         return "named as what draws the same"
     return "named wrongly" if told else "told as a point" if built else "not named"
+
+
+def meant(project: Project, b: FindingRecord) -> list[Hypothesis]:
+    """The mistakes that are listed so."""
+    plan = next(plan for some in project.plans.values() for plan in (some or {}).values() if plan.name == b.plan)
+    k = plan.labels.index(b.position) if b.position in plan.labels else 0
+    said = b.beside["kind"], b.beside["mistake"], b.step
+    return [h for h in hypotheses(plan, k, plan.labels) if (h.kind, h.words, h.step.path) == said]
 
 
 if __name__ == "__main__":
