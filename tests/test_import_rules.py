@@ -85,7 +85,7 @@ LIBRARIES = {
     "matplotlib": "backends.png lab.bench.records optimising.optimum",
     "pydantic": "api task.values task.schema task.messages task.variant task.title_entries task.keys "
                 "task.family_folder task.family_tables compare.group compare.placing",
-    "pydantic_core": "task.messages task.keys task.schema result_files", "cv2": "compare.photo", "pypdfium2": "compare.photo",
+    "pydantic_core": "task.messages task.keys task.schema task.values result_files", "cv2": "compare.photo", "pypdfium2": "compare.photo",
     "shapely": "drawing sheets methods lab.bench compare",
     "typst": "note.typst_writer", "docx": "note.docx_writer",
     "starlette": "page", "uvicorn": "page.serving", "openpyxl": "csv_tables",

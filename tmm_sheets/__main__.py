@@ -6,7 +6,8 @@ import gc
 import os
 import signal
 import sys
-from typing import NoReturn
+from types import ModuleType, SimpleNamespace
+from typing import NoReturn, cast
 
 from tmm_sheets import terminal
 
@@ -21,7 +22,8 @@ def main() -> NoReturn:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", "400000000")  # of formats whose size nobody else can tell beforehand
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # or it looks for some in every package that is installed
+    # Or pydantic loads a reader of e-mail to look for plugins in every package that is installed: a tenth of the start.
+    sys.modules.setdefault("pydantic.plugin._loader", cast(ModuleType, SimpleNamespace(get_plugins=tuple)))
     terminal.settle()
     for name in ("SIGTERM", "SIGHUP"):  # what is half-written is cleaned up, as after Ctrl-C; nohup stays nohup
         number = getattr(signal, name, None)
@@ -69,8 +71,6 @@ def _run(arguments: list[str]) -> int:
 
 
 def _carried_out(arguments: list[str]) -> int:
-    from pathlib import Path
-
     import click
 
     from tmm_sheets.errors import BadInput, CannotBuild, Stopped, reason_of
@@ -107,6 +107,8 @@ def _carried_out(arguments: list[str]) -> int:
     except MemoryError:
         return _say(tell("not enough memory; ask for fewer positions"), CANNOT_BUILD)
     except Exception as e:
+        from pathlib import Path
+
         from tmm_sheets import defects
 
         given = next(filter(os.path.isfile, arguments), None)

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tmm_sheets import words
-from tmm_sheets.resources import template
-from tmm_sheets.words import LANGUAGES, marked, tell
+from tmm_sheets.words import LANGUAGES, LOCALE, marked, tell
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -44,7 +43,7 @@ def chosen(arguments: Sequence[str]) -> Iterator[None]:
 @contextmanager
 def _click_speaks(language: str) -> Iterator[None]:
     """Let click's own words be of this language meanwhile: it asks gettext's default domain, and that the environment."""
-    gettext.bindtextdomain(gettext.textdomain(), template("locale"))
+    gettext.bindtextdomain(gettext.textdomain(), LOCALE)
     before = os.environ.get("LANGUAGE")
     os.environ["LANGUAGE"] = language
     try:

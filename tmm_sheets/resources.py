@@ -2,18 +2,30 @@
 
 from __future__ import annotations
 
+import os
 from functools import cache
-from pathlib import Path
+from typing import TYPE_CHECKING
 
-PACKAGE = Path(__file__).resolve().parent
+if TYPE_CHECKING:
+    from pathlib import Path
+
+PACKAGE = os.path.dirname(os.path.realpath(__file__))
 
 
 @cache
-def _folder(name: str) -> Path:
-    for folder in (PACKAGE / f"_{name}", PACKAGE.parent / name):
-        if folder.is_dir():
-            return folder
+def folder(name: str) -> str:
+    """The folder of some data."""
+    for found in (os.path.join(PACKAGE, f"_{name}"), os.path.join(os.path.dirname(PACKAGE), name)):
+        if os.path.isdir(found):
+            return found
     raise FileNotFoundError(f"data folder '{name}' is missing beside and inside {PACKAGE}")
+
+
+@cache
+def _path(name: str) -> Path:
+    from pathlib import Path  # not for --help, whose start it would make a tenth longer
+
+    return Path(folder(name))
 
 
 def template(path: str) -> Path:
@@ -24,7 +36,7 @@ def template(path: str) -> Path:
     FileNotFoundError
         when the folder is missing.
     """
-    return _folder("templates") / path
+    return _path("templates") / path
 
 
 def variants() -> Path:
@@ -35,4 +47,4 @@ def variants() -> Path:
     FileNotFoundError
         when it is missing.
     """
-    return _folder("variants")
+    return _path("variants")

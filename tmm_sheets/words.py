@@ -14,24 +14,31 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
-from decimal import Decimal
 from functools import cache, lru_cache
-from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from tmm_sheets.resources import template
+from tmm_sheets.resources import folder
+
+if TYPE_CHECKING:
+    from decimal import Decimal
 
 T = TypeVar("T")
 CODE = "en"
 """Language that the code itself is written in."""
 
 
-def languages(folder: Path) -> tuple[str, ...]:
+LOCALE = os.path.join(folder("templates"), "locale")
+"""Folder of the catalogues."""
+
+
+def languages(place: str | os.PathLike[str]) -> tuple[str, ...]:
     """Languages of a folder of catalogues, the code's own last; a file that lies there too is none."""
-    return (*sorted(path.name for path in folder.glob("[a-z]*") if path.is_dir() and path.name != CODE), CODE)
+    with os.scandir(place) as entries:
+        found = {entry.name for entry in entries if entry.is_dir() and entry.name[:1].islower()}
+    return (*sorted(found - {CODE}), CODE)
 
 
-LANGUAGES = languages(template("locale"))
+LANGUAGES = languages(LOCALE)
 """Languages that there are catalogues of: a folder is a language."""
 SHEETS, MESSAGES = "ru", CODE
 """Language of sheets when neither project nor command tells one, and of messages when the locale names none of them."""
@@ -56,7 +63,7 @@ ask_paper = _asked.set
 
 @cache
 def _catalogue(language: str) -> gettext.NullTranslations:
-    return gettext.translation(DOMAIN, template("locale"), [language], fallback=True)
+    return gettext.translation(DOMAIN, LOCALE, [language], fallback=True)
 
 
 @contextmanager
@@ -121,8 +128,11 @@ class CatalogueText(str):
         sign = decimal_sign(self.language)
         if sign == ".":
             return super().format(*args, **fields)
-        signed = {key: _Signed(value, sign) if isinstance(value, _NUMBERS) else value for key, value in fields.items()}
-        return super().format(*[_Signed(value, sign) if isinstance(value, _NUMBERS) else value for value in args], **signed)
+        from decimal import Decimal
+
+        numbers = float, Decimal
+        signed = {key: _Signed(value, sign) if isinstance(value, numbers) else value for key, value in fields.items()}
+        return super().format(*[_Signed(value, sign) if isinstance(value, numbers) else value for value in args], **signed)
 
 
 class _Signed:
@@ -133,9 +143,6 @@ class _Signed:
 
     def __format__(self, spec: str) -> str:
         return format(self.number, spec).replace(".", self.sign)
-
-
-_NUMBERS = (float, Decimal)
 
 
 def _text(text: str, language: str) -> CatalogueText:

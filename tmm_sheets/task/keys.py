@@ -14,12 +14,11 @@ from functools import cache
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_origin, get_type_hints
 
-from pydantic import AfterValidator, BeforeValidator, WrapValidator
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from tmm_sheets.task import messages, schema, units, variant
-from tmm_sheets.task.values import MOST
+from tmm_sheets.task.values import MOST, Checks
 from tmm_sheets.words import either, marked, tell
 
 
@@ -124,22 +123,22 @@ def restricted(base: Any, validators: tuple[Any, ...]) -> str:
     """Value of a type with validators: the named ones tell by their docstring, the others by what they were made with."""
     said = []
     for v in validators:
-        assert isinstance(v, BeforeValidator | AfterValidator | WrapValidator)
         given = made_with(v)
         if not given:
             said.append(tell(heading(v.func)))
+        elif "words" in given:
+            said.append(either([*(f'`"{word}"`' for word in given["words"]), tell(given["quantity"].name)]))
         elif "word" in given:
-            said.append(either([f'`"{given["word"]}"`', tell(given["quantity"].name) if "quantity" in given else value(base)]))
+            said.append(either([f'`"{given["word"]}"`', value(base)]))
         elif "wording" in given:
             expected = tell(given["wording"]).removeprefix(tell("expected {what}").partition("{")[0])
             said.append(re.sub(r"^an? ", "", expected))
-        elif "quantity" in given and not any(isinstance(o, AfterValidator) for o in validators):
+        elif "quantity" in given and not any(isinstance(o, Checks) for o in validators):
             said.append(tell(given["quantity"].name))
         elif "least" in given:
             few, many = marked("whole number from {least} to {most}"), marked("whole number, {least} or more")
             said.append(tell(many if given["most"] == MOST else few).format(least=given["least"], most=given["most"]))
-    said = list(dict.fromkeys(said))
-    return ", ".join(reversed(said[:1] if len(said) == 2 and said[1] == tell("name in quotes") else said))
+    return ", ".join(dict.fromkeys(said))
 
 
 def heading(validator: Any) -> str:

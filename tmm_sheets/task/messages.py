@@ -24,8 +24,8 @@ T = TypeVar("T", bound=Table)
 class SettingsTable(Table):
     """A whole settings file, see :mod:`~.title_entries`."""
 
-    title_block: TitleBlockTable = TitleBlockTable()
-    paper: PaperTable = PaperTable()
+    title_block: TitleBlockTable = TitleBlockTable.model_construct()
+    paper: PaperTable = PaperTable.model_construct()
 
 
 def read(whole: type[T], path: Path, hint: str = "") -> tuple[T, TomlLines]:

@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, WrapValidator
+from pydantic import GetCoreSchemaHandler, WrapValidator
+from pydantic_core import CoreSchema, core_schema
 
 from tmm_sheets import resources, spelling
 from tmm_sheets.numbers import ROUNDING
@@ -39,14 +40,31 @@ def _out_of_range(value: Any, quantity: units.Quantity) -> units.Refused:
     return units.Refused(said.format(expected=tell(quantity.expected), least=LEAST, greatest=GREATEST, given=value))
 
 
-def si(quantity: units.Quantity) -> BeforeValidator:
+class Reads:
+    """Reads what stands in a file: there is nothing left for pydantic to read, which would take long to find that out."""
+
+    def __init__(self, func: Callable[[Any], Any]) -> None:
+        self.func = func
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.func)
+
+
+class Checks(Reads):
+    """Looks at what was read, and may change it."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_after_validator_function(self.func, handler(source))
+
+
+def si(quantity: units.Quantity) -> Reads:
     """Reads a quantity into SI."""
-    return BeforeValidator(lambda value: parsed(value, quantity))
+    return Reads(lambda value: parsed(value, quantity))
 
 
-def si_or(word: str, quantity: units.Quantity) -> BeforeValidator:
-    """Reads a quantity into SI, or one word in its place."""
-    return BeforeValidator(lambda value: value if value == word else parsed(value, quantity))
+def si_or(quantity: units.Quantity, *words: str) -> Reads:
+    """Reads a quantity into SI, or one of some words in its place."""
+    return Reads(lambda value: value if value in words else parsed(value, quantity))
 
 
 def or_word(word: str) -> WrapValidator:
@@ -54,7 +72,7 @@ def or_word(word: str) -> WrapValidator:
     return WrapValidator(lambda value, read: value if value == word else read(value))
 
 
-def in_range(wording: str, holds: Callable[[float], bool]) -> AfterValidator:
+def in_range(wording: str, holds: Callable[[float], bool]) -> Checks:
     """Refuses values for which ``holds`` is false; ``wording`` says what was expected, a text of the catalogues."""
 
     def check(value: float) -> float:
@@ -62,7 +80,7 @@ def in_range(wording: str, holds: Callable[[float], bool]) -> AfterValidator:
             raise ValueError(tell(wording))
         return value
 
-    return AfterValidator(check)
+    return Checks(check)
 
 
 MOST = 100_000
@@ -73,7 +91,7 @@ MOST_PARTS = 720
 """Most parts of a turn."""
 
 
-def whole(least: int, most: int = MOST, fewer: str = marked("expected a whole number of {most} or less")) -> BeforeValidator:
+def whole(least: int, most: int = MOST, fewer: str = marked("expected a whole number of {most} or less")) -> Reads:
     """Takes whole numbers from ``least`` to ``most``; ``fewer`` says of more what was expected and why."""
 
     def check(value: Any) -> int:
@@ -83,10 +101,10 @@ def whole(least: int, most: int = MOST, fewer: str = marked("expected a whole nu
             raise ValueError(tell(fewer).format(most=most))
         return value
 
-    return BeforeValidator(check)
+    return Reads(check)
 
 
-def parts(least: int) -> BeforeValidator:
+def parts(least: int) -> Reads:
     """Takes parts of a turn."""
     return whole(least, MOST_PARTS, marked("expected {most} parts or fewer: half a degree of a turn, no protractor reads less"))
 
@@ -98,7 +116,7 @@ def _even_parts(parts: int) -> int:
     return parts
 
 
-def positive(quantity: units.Quantity, wording: str) -> BeforeValidator:
+def positive(quantity: units.Quantity, wording: str) -> Reads:
     """Reads a quantity into SI that must be greater than zero, and more than rounding leaves of it."""
 
     def check(value: Any) -> float:
@@ -109,15 +127,15 @@ def positive(quantity: units.Quantity, wording: str) -> BeforeValidator:
             raise ValueError(tell(wording))
         return found
 
-    return BeforeValidator(check)
+    return Reads(check)
 
 
-def not_negative(wording: str) -> AfterValidator:
+def not_negative(wording: str) -> Checks:
     """Refuses less than zero."""
     return in_range(wording, lambda x: x >= 0)
 
 
-def from_to(low: float, high: float, wording: str) -> AfterValidator:
+def from_to(low: float, high: float, wording: str) -> Checks:
     """Takes what lies between two limits, these included; what lies beyond by rounding is the limit."""
 
     def check(value: float) -> float:
@@ -125,7 +143,7 @@ def from_to(low: float, high: float, wording: str) -> AfterValidator:
             raise ValueError(tell(wording))
         return min(max(value, low), high)
 
-    return AfterValidator(check)
+    return Checks(check)
 
 
 _ACUTE = in_range(
@@ -142,7 +160,7 @@ def _printed(value: Any) -> str:
     return str(value)
 
 
-PrintedNumber = Annotated[str, BeforeValidator(_printed)]
+PrintedNumber = Annotated[str, Reads(_printed)]
 Coordinate = Annotated[float, si(units.LENGTH)]
 Length = Annotated[float, positive(units.LENGTH, marked("expected a length greater than zero"))]
 Angle = Annotated[float, si(units.ANGLE)]
@@ -150,8 +168,8 @@ AcuteAngle = Annotated[float, si(units.ANGLE), _ACUTE]
 PhaseAngle = Annotated[float, si(units.ANGLE), _PHASE]
 Speed = Annotated[float, positive(units.ANGULAR_VELOCITY, marked("expected a speed of rotation greater than zero"))]
 SignedSpeed = Annotated[float, si(units.ANGULAR_VELOCITY)]
-CrankAcceleration = Annotated[float | Literal["flywheel"], si_or("flywheel", units.ANGULAR_ACCELERATION)]
-Start = Annotated[str | float, si_or("dead", units.ANGLE), or_word("input")]
+CrankAcceleration = Annotated[float | Literal["flywheel"], si_or(units.ANGULAR_ACCELERATION, "flywheel")]
+Start = Annotated[str | float, si_or(units.ANGLE, "dead", "input")]
 InputSpeed = Annotated[float, positive(units.VELOCITY, marked("expected a velocity greater than zero"))]
 InputAcceleration = Annotated[float, si(units.ACCELERATION)]
 Gravity = Annotated[float, si(units.ACCELERATION), not_negative(marked("expected a gravity of zero or more"))]
@@ -168,7 +186,7 @@ Count = Annotated[int, whole(1)]
 Parts = Annotated[int, parts(1)]
 TurnParts = Annotated[int, parts(4)]
 Turns = Annotated[int, whole(1, 12)]
-EvenParts = Annotated[int, AfterValidator(_even_parts), whole(4)]
+EvenParts = Annotated[int, whole(4), Checks(_even_parts)]
 Side = Literal[1, -1]
 CamLaw = Literal["constant", "cosine", "sine", "trapezoid", "linearly decreasing", "table", "displacements"]
 Sense = Literal["clockwise", "counter-clockwise"]
@@ -187,21 +205,21 @@ def _name(value: Any) -> str:
     return value
 
 
-def _member(name: str) -> str:
+def _member(value: Any) -> str:
     """Name in quotes."""
-    return name.replace("'", "′")  # wheel 2′ of a block, as it can be typed
+    return _name(value).replace("'", "′")  # wheel 2′ of a block, as it can be typed
 
 
-def _wheel(name: str) -> str:
+def _wheel(value: Any) -> str:
     """Number of a wheel in quotes."""
-    if not re.fullmatch("[1-9][0-9]*′*", named := _member(name)):
+    if not re.fullmatch("[1-9][0-9]*′*", named := _member(value)):
         raise ValueError(tell('expected the number of a wheel in quotes, for example "1"'))
     return named
 
 
-def _carrier(name: str) -> str:
+def _carrier(value: Any) -> str:
     """`"H"` or `"H1"`."""
-    if not re.fullmatch("H[0-9]*", name):
+    if not re.fullmatch("H[0-9]*", name := _name(value)):
         raise ValueError(tell('expected a carrier "H" or "H1"'))
     return name
 
@@ -225,13 +243,13 @@ def _point_or_coordinates(value: Any) -> str | tuple[float, float]:
     raise ValueError(tell('expected the name of a point or two coordinates, for example ["0 m", "0.33 m"]'))
 
 
-TitleText = Annotated[str, AfterValidator(title_text)]
-Name = Annotated[str, BeforeValidator(_name)]
-MemberName = Annotated[str, AfterValidator(_member), BeforeValidator(_name)]
-WheelName = Annotated[str, AfterValidator(_wheel), BeforeValidator(_name)]
-CarrierName = Annotated[str, AfterValidator(_carrier), BeforeValidator(_name)]
-ForceDirection = Annotated[str | float, BeforeValidator(_direction)]
-GuidePoint = Annotated[str | tuple[float, float], BeforeValidator(_point_or_coordinates)]
+TitleText = Annotated[str, Checks(title_text)]
+Name = Annotated[str, Reads(_name)]
+MemberName = Annotated[str, Reads(_member)]
+WheelName = Annotated[str, Reads(_wheel)]
+CarrierName = Annotated[str, Reads(_carrier)]
+ForceDirection = Annotated[str | float, Reads(_direction)]
+GuidePoint = Annotated[str | tuple[float, float], Reads(_point_or_coordinates)]
 
 
 def _diagram(value: Any) -> tuple[tuple[str | float, str | float], ...]:
@@ -244,7 +262,7 @@ def _diagram(value: Any) -> tuple[tuple[str | float, str | float], ...]:
     return tuple((p[0], p[1]) for p in value)
 
 
-Diagram = Annotated[tuple[tuple[Any, Any], ...], BeforeValidator(_diagram)]
+Diagram = Annotated[tuple[tuple[Any, Any], ...], Reads(_diagram)]
 Torque = Annotated[float, si(units.MOMENT), not_negative(marked("expected a moment of zero or more"))]
 Pressure = Annotated[float, si(units.PRESSURE)]
 
@@ -297,12 +315,12 @@ def _shares(pairs: Sequence[tuple[Any, Any]]) -> Sequence[tuple[Any, Any]]:
     return pairs
 
 
-CamDiagram = Annotated[tuple[tuple[Any, Any], ...], AfterValidator(_shares), BeforeValidator(_diagram)]
+CamDiagram = Annotated[tuple[tuple[Any, Any], ...], Reads(_diagram), Checks(_shares)]
 
 
-def _arrangement(name: str) -> str:
+def _arrangement(value: Any) -> str:
     """Name of an arrangement."""
-    return _known(name, (p.stem for p in resources.template("sheets").glob("*.toml")),
+    return _known(_name(value), (p.stem for p in resources.template("sheets").glob("*.toml")),
                   tell('unknown sheet, not in templates/sheets: "{name}"; {hint}'))
 
 
@@ -325,8 +343,8 @@ def _known(name: str, names: Iterable[str], message: str) -> str:
     return name
 
 
-SheetName = Annotated[Name, AfterValidator(_arrangement)]
-ManualName = Annotated[str, AfterValidator(_manual)]
+SheetName = Annotated[str, Reads(_arrangement)]
+ManualName = Annotated[str, Checks(_manual)]
 
 
 def meant(word: str, known: list[str]) -> tuple[str, str]:
