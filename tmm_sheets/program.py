@@ -58,11 +58,11 @@ def source_fingerprints() -> tuple[str, str]:
     name = fingerprint("program", "\n".join((sys.version, *looked_at)))
     if known := kept.taken(kept.read(name), lambda tree: (str(tree[0]), str(tree[1]))):
         return known
-    own = fingerprint(__version__, *(part for entry in files for part in (entry.name, _content(entry.path))))
+    own = fingerprint(__version__, *[part for entry in files for part in (entry.name, _content(entry.path))])
     # Installers write the version of a library into the name of a folder beside it.
     whole = fingerprint(own, sys.version, *(
         path.name for name, file in libraries.items() for path in sorted(Path(file).parents[1].glob(f"{name}-*"))))
-    if time_ns() - max(stat.st_mtime_ns for stat in stats) > SETTLED:
+    if time_ns() - max([stat.st_mtime_ns for stat in stats]) > SETTLED:
         kept.write(name, json.dumps([own, whole]).encode())
     return own, whole
 

@@ -281,7 +281,7 @@ class Project:
         turned = self.motion.turned
         every = np.concatenate([np.concatenate(([a + 1e-9], turned[(turned > a + 1e-6) & (turned < b - 1e-6)], [b - 1e-9]))
                                 for a, b in pairwise(edges)])
-        return self.study_at(every, tuple("" for _ in every))
+        return self.study_at(every, tuple(["" for _ in every]))
 
     @cached_property
     def force_index(self) -> int:

@@ -101,7 +101,7 @@ class _Scanner:
     def __init__(self, text: str) -> None:
         self.text = text
         self.pos = 0
-        self.starts = [0, *(m.end() for m in re.finditer("\n", text))]
+        self.starts = [0, *[m.end() for m in re.finditer("\n", text)]]
         self.found = TomlLines()
         self.tables: dict[KeyPath, int] = {}
 

@@ -154,7 +154,7 @@ class LiveSheet:
         name = form.name.upper()
         record = self._block(name, 2)
         filled = {k for f in form.fields for k in range(f.first, f.end)}
-        rest = tuple(self.marks[k] for k in range(form.first, form.end) if k not in filled)
+        rest = tuple([self.marks[k] for k in range(form.first, form.end) if k not in filled])
         self.parts.blocks += (text for _, text in self._marks(rest, record))
         for f in form.fields:
             self.parts.blocks.append(self._attribute("ATTDEF", f, record))
@@ -162,7 +162,7 @@ class LiveSheet:
         insert = next(self.handles)
         owner = self.frame.owner
         text = (f"0\nINSERT\n5\n{insert:X}\n{head('AcDbBlockReference', owner, 'FRAME')}66\n1\n2\n{name}\n{place(10, 0j)}"
-                + "".join(self._attribute("ATTRIB", f, f"{insert:X}") for f in form.fields)
+                + "".join([self._attribute("ATTRIB", f, f"{insert:X}") for f in form.fields])
                 + f"0\nSEQEND\n5\n{next(self.handles):X}\n330\n{insert:X}\n100\nAcDbEntity\n8\nFRAME\n")
         self._add(form.first, [(insert, text)])
         for f in form.fields:
@@ -206,7 +206,7 @@ class LiveSheet:
 def letters_in_common() -> frozenset[str]:
     """Letters of the common font, and what is left out of a text for it."""
     text = template(f"fonts/{COMMON}.lff").read_text(encoding="utf-8")
-    return frozenset([BAR, *(chr(int(code, 16)) for code in re.findall(r"^\[#?([0-9a-fA-F]+)\]", text, re.M))])
+    return frozenset([BAR, *[chr(int(code, 16)) for code in re.findall(r"^\[#?([0-9a-fA-F]+)\]", text, re.M)]])
 
 
 def _missing_from_common_font(text: str) -> re.Pattern[str]:

@@ -78,7 +78,7 @@ class DxfFrame(NamedTuple):
                 BLOCKS: "".join(parts.blocks), BODY: "".join(parts.entities), GROUPED: "".join(parts.grouped),
                 GROUPS: "".join(parts.groups)}  # fmt: skip
         pieces = re.split(f"({'|'.join(map(re.escape, told))})", self.text)
-        return "".join(told.get(piece, piece) for piece in pieces)
+        return "".join([told.get(piece, piece) for piece in pieces])
 
 
 WEIGHTS = (0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200, 211)
@@ -143,7 +143,7 @@ def entity(mark: Line | Arc | Polyline | Fill, handle: int, owner: str, layer: s
     if n in (3, 4):
         corners = mark.points[[0, 1, -1, 2]].tolist()  # those of a SOLID run as in the letter Z
         return (f"0\nSOLID\n5\n{handle:X}\n{head('AcDbTrace', owner, layer, thin)}"
-                f"{''.join(place(10 + i, z) for i, z in enumerate(corners))}")
+                f"{''.join([place(10 + i, z) for i, z in enumerate(corners)])}")
     return (f"0\nHATCH\n5\n{handle:X}\n{head('AcDbHatch', owner, layer, thin)}10\n0\n20\n0\n30\n0\n210\n0\n220\n0\n230\n1\n"
             f"2\nSOLID\n70\n1\n71\n0\n91\n1\n92\n3\n72\n0\n73\n1\n93\n{n}\n"
             f"{_vertices(n) % tuple(coordinates(mark.points))}97\n0\n75\n0\n76\n1\n98\n0\n")

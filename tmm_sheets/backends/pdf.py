@@ -103,7 +103,7 @@ def _bookmarks(page: Canvas, drawing: Drawing, n: int) -> None:
     page.addOutlineEntry(drawing.title, f"sheet{n}", 0)
     for k, view in enumerate(drawing.views, 1):
         key = f"sheet{n}-{k}"
-        left, bottom, right, top = (float(edge) * MM for edge in view.box)  # reportlab gives NumPy's numbers all their digits
+        left, bottom, right, top = [float(edge) * MM for edge in view.box]  # reportlab gives NumPy's numbers all their digits
         page.bookmarkPage(key, "FitR", left=left, bottom=bottom, right=right, top=top)
         page.addOutlineEntry(view.name, key, 1)
 
@@ -209,7 +209,7 @@ def _metadata(drawing: Drawing, date: str) -> bytes:
 def _geometry(drawing: Drawing, names: Mapping[str, str] | None = None) -> str:
     """Path operators of all marks but lettering, by role, in its layer, and by line type."""
     by_look = defaultdict[tuple[str, str], list[str]](list)
-    drawn = [mark for mark in drawing.marks if not isinstance(mark, Text)]
+    drawn = [mark for mark in drawing.marks if type(mark) is not Text]
     for mark in cast("Iterator[Stroke]", strokes(drawn)):
         by_look[names[layer(mark).role] if names else "", mark.style] += [_path(mark)]
     # Thin lines first, so that thick ones lie over their ends.
@@ -269,7 +269,7 @@ def _lettering(drawing: Drawing, page: Any) -> str:
     out, now, wide, known = ["BT"], "", 1.0, {*map(chr, font.face.charToGlyph)}
     coded = dict[str, list[tuple[str, str]]]()  # by its text each run's subsets of the font with its codes there
     for mark in drawing.marks:
-        if not isinstance(mark, Text):
+        if type(mark) is not Text:
             continue
         if mark.text not in coded:
             if not known.issuperset(mark.text):

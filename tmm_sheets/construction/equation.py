@@ -174,7 +174,7 @@ def _laid_out(
         text = constant_text(tree.value)
         return expression.Constant(float(text)) if text else tree
     assert isinstance(tree, expression.Operation)
-    parts = tuple(_laid_out(p, values, angles, own, places, inside or tree.name in ANGLES) for p in tree.parts)
+    parts = tuple([_laid_out(p, values, angles, own, places, inside or tree.name in ANGLES) for p in tree.parts])
     return expression.Operation(tree.name, parts, tree.function)
 
 
@@ -282,7 +282,7 @@ def equation(of: Expression | Callable[..., Any], quantities: Sequence[Quantity]
     value = degrees_and_minutes(result.value, of_result) if angle else result.written(Digits(of_result))
     parts = [result.symbol] if result.symbol else []
     if in_letters:
-        form = line(_in_letters(tree, tuple(q.symbol for q in quantities), paper()))
+        form = line(_in_letters(tree, tuple([q.symbol for q in quantities]), paper()))
         parts += [form] if form != result.symbol else []
     if not isinstance(tree, Argument):
         parts.append(line(lettered(of_tree(tree, numbers))))

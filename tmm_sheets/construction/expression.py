@@ -171,7 +171,7 @@ def trace(compute: Callable[..., Any], count: int) -> Expression | None:
     {'/': [{'*': [{'arg': 0}, {'^': [{'arg': 1}, 2.0]}]}, 2.0]}
     """
     try:
-        return _node(compute(*(Argument(i) for i in range(count))))
+        return _node(compute(*[Argument(i) for i in range(count)]))
     except (TypeError, AttributeError, ValueError, IndexError):
         return None
 

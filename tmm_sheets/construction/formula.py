@@ -304,7 +304,7 @@ def simplified(tree: expression.Expression) -> expression.Expression:
         return tree
     parts = tuple(map(simplified, tree.parts))
     if tree.name == "+" and len(parts) > 1:
-        kept = tuple(p for p in parts if not _is_constant(p, 0.0))
+        kept = tuple([p for p in parts if not _is_constant(p, 0.0)])
         if len(kept) == 1:
             return kept[0]
         parts = kept or parts[:1]

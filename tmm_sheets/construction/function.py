@@ -372,7 +372,7 @@ class Replay:
         values, begin = [*inputs], perf_counter()
         with np.errstate(all="ignore"):
             for compute, slots in self._moves:
-                values.append(compute(*(values[i] if i >= 0 else x for i, x in slots)))
+                values.append(compute(*[values[i] if i >= 0 else x for i, x in slots]))
         if search is not None:
             search.again(len(self), perf_counter() - begin)
         return [values[i] if i >= 0 else x for i, x in self._wanted]

@@ -150,7 +150,7 @@ class Gaps:
     @property
     def touching(self) -> tuple[Cosine, ...]:
         """Those that touch zero: each makes one change point a turn."""
-        return tuple(c for c in (self.p, self.q) if c.touches)
+        return tuple([c for c in (self.p, self.q) if c.touches])
 
     @property
     def angles(self) -> tuple[float, ...]:

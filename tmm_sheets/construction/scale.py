@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
 from functools import cache
 from math import floor, isclose, log10
@@ -142,12 +143,14 @@ def handy(least: float) -> float:
     """
     if not least > 0:
         raise ValueError(f"a scale factor must be positive, not {least}")
-    return next(candidate for candidate in _series(least) if candidate >= least * (1 - 1e-9))
+    series = _series(least)
+    return series[bisect_left(series, least * (1 - 1e-9))]
 
 
 def _largest(most: float) -> float:
     """Largest number of the series that is not greater than ``most``."""
-    return max(c for c in _series(most) if c <= most * (1 + 1e-9))
+    series = _series(most)
+    return series[bisect_right(series, most * (1 + 1e-9)) - 1]
 
 
 def _series(about: float) -> tuple[float, ...]:
@@ -158,7 +161,7 @@ def _series(about: float) -> tuple[float, ...]:
 @cache
 def _decades(power: int) -> tuple[float, ...]:
     # Decimal literals instead of products: 2.5 * 10**-3 must be the number written 0.0025.
-    return tuple(float(f"{mantissa}e{k}") for k in (power - 1, power, power + 1) for mantissa in HANDY)
+    return tuple([float(f"{mantissa}e{k}") for k in (power - 1, power, power + 1) for mantissa in HANDY])
 
 
 # --- least sizes on paper --------------------------------------------------------------------------------------------------

@@ -270,13 +270,14 @@ class Step:
 
     def at(self, k: int) -> Any:
         """Value at position ``k`` (the value itself when it does not depend on the position)."""
-        return value_at(self, k)
+        value = self.value  # asked thousands of times: without another call
+        return value[k] if type(value) is np.ndarray and value.ndim else value
 
     def helpers(self, k: int) -> tuple[Helper, ...]:
         """Helper lines that the step leaves at position ``k``, in the unit of its plan; none where it cannot be built."""
         if self.rule.helpers is None:
             return ()
-        args, value = tuple(value_at(a, k) for a in self.args), self.at(k)
+        args, value = tuple([value_at(a, k) for a in self.args]), self.at(k)
         if self.rule.gives != "curve" and (np.ndim(value) or np.isnan(value)):
             return ()
         return self.rule.helpers(args, value)

@@ -370,7 +370,7 @@ class Canvas(ScaleBook):
             place = complex(run.at.real * wide, run.at.imag) if wide != 1.0 else run.at
             self.marks.append(Text(at + u * (place + shift), run.text, run.height, angle, self.of, by, wide))
         for bar in laid.bars:
-            a, b = (complex(z.real * wide, z.imag) if wide != 1.0 else z for z in bar)
+            a, b = [complex(z.real * wide, z.imag) if wide != 1.0 else z for z in bar]
             self.marks.append(Line(at + u * a, at + u * b, "text", self.of, by))
         self._one("lettering", first, markup)
 

@@ -232,7 +232,7 @@ def interrupted(mark: Mark) -> list[Mark]:
     match mark:
         case Text() | Fill() | Line(gaps=()) | Arc(gaps=()) | Polyline(gaps=()):
             return [mark]
-    borders = [0.0, *(border for gap in mark.gaps for border in gap), 1.0]
+    borders = [0.0, *[border for gap in mark.gaps for border in gap], 1.0]
     pieces = [(a, b) for a, b in zip(borders[::2], borders[1::2], strict=True) if b > a]
     whole = mark._replace(gaps=())
     if isinstance(whole, Line):

@@ -97,9 +97,9 @@ class InkIndex:
         if lines:
             a, b = (np.fromiter(chain.from_iterable(of), complex) for of in (starts, ends))
             self.a, self.b, self.sides = np.append(self.a, a), np.append(self.b, b), np.hstack((self.sides, sides(a, b)))
-            self.of, self.strong, self._heavy, self.parts, self.half = (
+            self.of, self.strong, self._heavy, self.parts, self.half = [
                 np.append(known, np.repeat(column, [*map(len, starts)])) for known, column in zip(
-                    (self.of, self.strong, self._heavy, self.parts, self.half), zip(*lines, strict=True), strict=True))
+                    (self.of, self.strong, self._heavy, self.parts, self.half), zip(*lines, strict=True), strict=True)]
         if texts:
             corners = text_boxes([*texts.values()])
             self.texts += texts
@@ -158,7 +158,7 @@ class InkIndex:
         middle = origin + p * along
         start, end, around, counts = self._outlines
         near = find_near(around, Box(*[middle.real, middle.imag] * 2), abs(complex(box.x0, box.y0) - p) + ROUNDING)
-        a, b = ((z[near] - origin) / along for z in (start, end))
+        a, b = [(z[near] - origin) / along for z in (start, end)]
         return int(counts[near[enters(a, b - a, *box)]].sum())
 
     def is_crossed(self, a: complex, b: complex) -> bool:
@@ -301,7 +301,7 @@ class Cells:
 
     def add_points(self, z: Points) -> None:
         """Take the cells of points, complex (n,)."""
-        i, j = (((v - low) / self.side).astype(int) for v, low in zip((z.real, z.imag), self._corner[:2, 0], strict=True))
+        i, j = [((v - low) / self.side).astype(int) for v, low in zip((z.real, z.imag), self._corner[:2, 0], strict=True)]
         there = (i >= 0) & (i < self.taken.shape[0]) & (j >= 0) & (j < self.taken.shape[1])
         self.taken[i[there], j[there]] = True
 
@@ -395,11 +395,11 @@ def fills(drawing: Drawing) -> Iterator[tuple[str, float]]:
 def dense(marks: Iterable[Mark], step: float) -> Points:
     """Points along marks, or round their lettering, complex (n,), at most ``step`` mm apart."""
     some = list(marks)
-    a, b = np.array([(mark.a, mark.b) for mark in some if isinstance(mark, Line)], complex).reshape(-1, 2).T
-    corners = text_boxes([mark for mark in some if isinstance(mark, Text)])
-    others = [flat(mark, 2.0) for mark in some if not isinstance(mark, (Line, Text))]
-    return sample(np.concatenate((a, corners[:, :-1].ravel(), *(z[:-1] for z in others))),
-                  np.concatenate((b, corners[:, 1:].ravel(), *(z[1:] for z in others))), step)
+    a, b = np.array([(mark.a, mark.b) for mark in some if type(mark) is Line], complex).reshape(-1, 2).T
+    corners = text_boxes([mark for mark in some if type(mark) is Text])
+    others = [flat(mark, 2.0) for mark in some if type(mark) is not Line and type(mark) is not Text]
+    return sample(np.concatenate((a, corners[:, :-1].ravel(), *[z[:-1] for z in others])),
+                  np.concatenate((b, corners[:, 1:].ravel(), *[z[1:] for z in others])), step)
 
 
 def covering(box: Box) -> Points:

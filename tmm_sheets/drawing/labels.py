@@ -156,7 +156,7 @@ class PlacedLabels:
 
     def count_faults(self, *some: int) -> int:
         """How many things are wrong with some labels where they stand; to be read as another thing's is worse than the others."""
-        return sum(self._count_met(k) + SEVERAL * self._is_misread(k) for k in some)
+        return sum([self._count_met(k) + SEVERAL * self._is_misread(k) for k in some])
 
     def _count_met(self, k: int) -> int:
         """How many other leaders and how much other lettering the leader of label ``k`` meets; how many leaders its lettering;
@@ -225,7 +225,7 @@ class PlacedLabels:
 
     def improve_all(self, around: Around) -> bool:
         """Give labels with which something is wrong better places, one after another; whether any has got one."""
-        return sum(self.improve(k, around) for k in range(len(self.at)) if k in self._disturbed) > 0
+        return sum([self.improve(k, around) for k in range(len(self.at)) if k in self._disturbed]) > 0
 
     def improve(self, k: int, around: Around) -> bool:
         """Give label ``k`` a better place if something is wrong with it, and what it meets another one if need be.
@@ -337,7 +337,7 @@ def candidate_places(placed: PlacedLabels, labels: Sequence[Label], around: Arou
         x0, y0, x1, y1 = sides[:, k] + _MARGIN
         beyond = np.maximum.reduce([view.x0 - x0, view.y0 - y0, x1 - view.x1, y1 - view.y1])
         cost += label.thin * LIGHT * light[k] + OUTSIDE * (beyond > 0)
-        found.append(_Candidates(sides[:, k], cost, beyond > AWAY, clear[k], Box(*(edge[k] for edge in edges))))
+        found.append(_Candidates(sides[:, k], cost, beyond > AWAY, clear[k], Box(*[edge[k] for edge in edges])))
     return found
 
 
@@ -347,7 +347,7 @@ def _first_places(placed: PlacedLabels, labels: Sequence[Label], tried: Sequence
     cost = np.array([np.where(each.clear, each.cost, np.inf) for each in tried])
     best = np.argmin(cost, axis=1)
     there = np.array([each.sides[:, k] for each, k in zip(tried, best.tolist(), strict=True)]).T
-    p, gap, heights = (np.array(v) for v in zip(*((label.anchor, label.gap, label.height) for label in labels), strict=True))
+    p, gap, heights = [np.array(v) for v in zip(*[(label.anchor, label.gap, label.height) for label in labels], strict=True)]
     x0, y0, x1, y1 = there
     way = np.abs(owners.nearest(p, there) - p)
     sure = np.isfinite(cost[np.arange(len(labels)), best]) & (way <= NEAR + gap) & np.array([not label.shelf for label in labels])

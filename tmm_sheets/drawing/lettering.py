@@ -67,7 +67,7 @@ class Lettering(NamedTuple):
 
     def over_rule(self, row: float) -> float:
         """Height of the baseline over the rule under a table row ``row`` mm high; a low index lifts it."""
-        size = max((run.height for run in self.runs), default=0.0)
+        size = max([run.height for run in self.runs], default=0.0)
         free = (row - self.ascent - self.descent) / 2
         return max((row - size) / 2, self.descent + min(OVER_RULE, free))
 
@@ -124,8 +124,8 @@ def glyph(char: str) -> Glyph:
 def lacking(text: str) -> str:
     """Characters of ``text`` without a glyph, each once; an overbar needs a letter before it."""
     known = _font()["glyphs"]
-    return "".join(dict.fromkeys(c for before, c in zip("\0" + text, text, strict=False)
-                                 if c not in known and not (c == BAR and before in known)))  # fmt: skip
+    return "".join(dict.fromkeys([c for before, c in zip("\0" + text, text, strict=False)
+                                 if c not in known and not (c == BAR and before in known)]))  # fmt: skip
 
 
 def advance(text: str, height: float) -> float:
@@ -226,7 +226,7 @@ class _Setter:
                 break
             bodies[lift], i = self.body(markup, i + 1)
         # One above the other means: along the slope of the letters.
-        foot = pen.real + max(max(-_GAP * (height - small), -_OVERLAP - slant() * lift) for lift in bodies)
+        foot = pen.real + max([max(-_GAP * (height - small), -_OVERLAP - slant() * lift) for lift in bodies])
         ends = []
         for lift, body in bodies.items():
             lean = slant() * lift
@@ -308,7 +308,7 @@ SIGNS = r"(?= [+−] | = (?!0$))"
 def broken(text: str, width: float, height: float, signs: str = SIGNS) -> list[str]:
     """Break a formula before its ``signs`` into lines no wider than ``width`` mm, but not at a no-break space."""
     lines = [""]
-    for piece in (part.replace("\u00a0", " ") for part in re.split(signs, text)):
+    for piece in [part.replace("\u00a0", " ") for part in re.split(signs, text)]:
         if lines[-1] and letter(lines[-1] + piece, height).width > width:
             lines.append(piece.lstrip())
         else:

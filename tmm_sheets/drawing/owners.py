@@ -95,7 +95,7 @@ class Surroundings:
             none = np.zeros(len(a), bool)
             own = none if self.vector is None else _lies_along(*self.vector, a, b)
             led = a, b, none + LEADER, none, own, none, sides(a, b)
-            lines = tuple(np.concatenate(pair, axis=-1) for pair in zip(lines, led, strict=True))
+            lines = tuple([np.concatenate(pair, axis=-1) for pair in zip(lines, led, strict=True)])
         self.a, self.b, self.of, self.strong, self.own, self.twin, self.sides = lines
         self.leaders = self.of == LEADER
 
@@ -173,7 +173,7 @@ class Surroundings:
             return []
         a, b = self.vector
         within = [complex(z[0] + IN_HEAD * (z[1:].mean() - z[0])) for z in self._heads]
-        places = [z for z in (*(a + share * (b - a) for share in SHARES), *within) if abs(z - self.anchor) > SYMBOL]
+        places = [z for z in (*[a + share * (b - a) for share in SHARES], *within) if abs(z - self.anchor) > SYMBOL]
         return [*places, self._farthest_from_others(a, b)] if self._heads else places
 
     def _farthest_from_others(self, a: complex, b: complex) -> complex:
@@ -279,7 +279,7 @@ class Pairs(NamedTuple):
         gaps = _to_box(self.a[pair], self.b[pair], runs.boxes[:, run] + boxes[[0, 1, 0, 1]][:, which])[0]
         first = _group_starts(which)
         rows = which[first]
-        foreign, nearest_own = (np.minimum.reduceat(np.where(of, gaps, inf), first) for of in (~own & ~twin, own))
+        foreign, nearest_own = [np.minimum.reduceat(np.where(of, gaps, inf), first) for of in (~own & ~twin, own)]
         found[rows] = foreign - nearest_own
         least = np.zeros(m)
         least[rows] = nearest_own
@@ -336,7 +336,7 @@ def _own_segments(ink: InkIndex, labels: Sequence[Label], subjects: Sequence[_Su
         steps[k, named] = True
     found, apart = steps[which, of], distance(a, b, at)
     alone, on = np.bincount(which[found], minlength=len(labels)) > 0, np.zeros(len(labels), bool)
-    for k, number in dict.fromkeys(zip(*(v[found & (apart <= 2 * AT)].tolist() for v in (which, of)), strict=True)):
+    for k, number in dict.fromkeys(zip(*[v[found & (apart <= 2 * AT)].tolist() for v in (which, of)], strict=True)):
         on[k] = True
         alone[k] &= np.abs(flat(ink.marks[number])[[0, -1]] - labels[k].anchor).min() > 2 * AT
     of_vector = np.array([vector is not None for _, vector in subjects])
@@ -391,7 +391,7 @@ def _vector(ink: InkIndex, label: Label, named: Sequence[int]) -> tuple[complex,
     roles = {"vector"} | {"construction", "symbol"} & {label.by.role}
     lines = ink.lines_of(label.by) if named else {}
     return next((ends for n, (ends, role) in lines.items() if role in roles and n in named
-                 and _apart(*ends, label.anchor) <= 2 * AT and min(abs(z - label.anchor) for z in ends) > 2 * AT), None)
+                 and _apart(*ends, label.anchor) <= 2 * AT and min([abs(z - label.anchor) for z in ends]) > 2 * AT), None)
 
 
 def _apart(a: complex, b: complex, p: complex) -> float:

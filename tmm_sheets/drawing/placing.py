@@ -48,7 +48,7 @@ class _Letters(NamedTuple):
 
 def interrupt(canvas: Canvas) -> None:
     """Interrupt the thin lines of a canvas behind its lettering."""
-    letters = _letters([mark for mark in canvas.marks if isinstance(mark, Text)])
+    letters = _letters([mark for mark in canvas.marks if type(mark) is Text])
     if letters is None:
         return
     yields = [(k, mark) for k, mark in enumerate(canvas.marks) if isinstance(mark, Line | Arc | Polyline)
@@ -79,8 +79,8 @@ def _gaps(line: Points, letters: _Letters, near: npt.NDArray[np.intp]) -> tuple[
         reached = max(reached, b)
     if gaps and length - reached < SHOWN:
         gaps[-1] = gaps[-1][0], length
-    left = length - sum(b - a for a, b in gaps)
-    return tuple((a / length, b / length) for a, b in gaps) if left >= KEPT * length > 0 else ()
+    left = length - sum([b - a for a, b in gaps])
+    return tuple([(a / length, b / length) for a, b in gaps]) if left >= KEPT * length > 0 else ()
 
 
 def _chords(mark: Mark) -> Points:
@@ -94,7 +94,7 @@ def _chords(mark: Mark) -> Points:
 def _ink(text: str, height: float, wide: float) -> tuple[complex, complex] | None:
     """Corners of the ink of a run of letters from its beginning."""
     left, bottom, right, top = extents(text)
-    low, high = (height * complex(wide * x, y) for x, y in ((left + PEN / 2, bottom + PEN / 2), (right - PEN / 2, top - PEN / 2)))
+    low, high = [height * complex(wide * x, y) for x, y in ((left + PEN / 2, bottom + PEN / 2), (right - PEN / 2, top - PEN / 2))]
     return (low - complex(CLEAR, CLEAR), high + complex(CLEAR, CLEAR)) if left <= right else None
 
 
@@ -136,7 +136,7 @@ def even(canvas: Canvas, numbers: Sequence[AxisNumber]) -> None:
         if isinstance(mark, Text):
             axes[number.part, round(number.foot.imag, 3)][number] = mark
     for marks in axes.values():
-        least = min(mark.height for mark in marks.values())
+        least = min([mark.height for mark in marks.values()])
         for number, mark in marks.items():
             if mark.height > least:
                 wide, narrow = (letter(number.text, height).width for height in (mark.height, least))

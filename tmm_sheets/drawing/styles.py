@@ -93,7 +93,7 @@ def layers() -> Mapping[tuple[str, str], LayerStyle]:
     found = {}
     for role, row in roles().items():
         usual = row["style"]
-        for style in (usual, *(name for name in line_types() if name != usual)):
+        for style in (usual, *[name for name in line_types() if name != usual]):
             name = role.upper() if style == usual else f"{role.upper()}_{line_type(style).layer}"
             found[role, style] = LayerStyle(name, role, style)
     return MappingProxyType(found)

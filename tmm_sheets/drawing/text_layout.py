@@ -58,7 +58,7 @@ def size(markup: str, height: float) -> tuple[float, float]:
 def run_corners(markup: str, height: float) -> tuple[Points, ...]:
     """Corners of the rectangles of the runs of lettering, complex (4,) each, mm from the lower left corner of the whole."""
     laid = letter(markup, height)
-    return tuple(run.at + 1j * laid.descent + _corners(run.text, run.height) for run in laid.runs)
+    return tuple([run.at + 1j * laid.descent + _corners(run.text, run.height) for run in laid.runs])
 
 
 def spread(heights: list[float], least: float) -> list[float]:
@@ -77,10 +77,14 @@ def spread(heights: list[float], least: float) -> list[float]:
     return out
 
 
+BELOW = frozenset("рудцщфgjpqyβγζημξρφχψς,;()")
+"""Letters and signs that reach below the line."""
+
+
 @lru_cache(maxsize=10_000)
 def _corners(text: str, h: float) -> Points:
     """Corners, complex (4,) mm, of the rectangle round text of the height ``h`` along the x axis from the origin."""
-    w, drop = advance(text, h), -0.3 * h if any(c in "рудцщфgjpqyβγζημξρφχψς,;()" for c in text) else 0.0
+    w, drop = advance(text, h), 0.0 if BELOW.isdisjoint(text) else -0.3 * h
     return np.array([complex(0, drop), complex(w, drop), complex(w + 0.15 * h, h), complex(0, h)])
 
 
@@ -97,7 +101,7 @@ def size_in(row: float) -> float:
 
 def needs(rows: Sequence[Sequence[str]], height: float, gap: float = GAP) -> list[float]:
     """Widths of the columns, mm: their widest cell in letters of ``height`` mm, and ``gap``."""
-    return [max(letter(cell, height).width for cell in column) + gap for column in zip(*rows, strict=True)]
+    return [max([letter(cell, height).width for cell in column]) + gap for column in zip(*rows, strict=True)]
 
 
 def parted(rows: Sequence[Sequence[str]], width: float, height: float) -> list[list[list[str]]]:
@@ -122,8 +126,8 @@ def parted(rows: Sequence[Sequence[str]], width: float, height: float) -> list[l
 
 def shared(widths: Sequence[float], need: Sequence[float]) -> list[float] | None:
     """Widths of columns, those below their ``need`` widened by what the others can spare; None if that is not enough."""
-    lack = sum(max(n - w, 0.0) for n, w in zip(need, widths, strict=True))
-    spare = sum(max(w - n, 0.0) for n, w in zip(need, widths, strict=True))
+    lack = sum([max(n - w, 0.0) for n, w in zip(need, widths, strict=True)])
+    spare = sum([max(w - n, 0.0) for n, w in zip(need, widths, strict=True)])
     if not lack:
         return list(widths)
     return [n if w < n else w - (w - n) * lack / spare for n, w in zip(need, widths, strict=True)] if lack <= spare else None
@@ -164,7 +168,7 @@ def heading(text: str, width: float, height: float, most: int = 1) -> Heading:
     sizes = [size for size in reversed(SIZES) if SMALLEST <= size <= height] or [height]
     for size in sizes:
         broken = [wrapped(text, size, count) for count in range(1, most + 1)]
-        shares = [width / max(max(letter(line, size).width for line in lines), 1e-9) for lines in broken]
+        shares = [width / max(max([letter(line, size).width for line in lines]), 1e-9) for lines in broken]
         fits = next((n for n, share in enumerate(shares) if share >= 1), shares.index(max(shares)))
         if shares[fits] >= NARROWEST:
             break

@@ -183,7 +183,7 @@ def short_name(name: str) -> str:
     kept = (surname, *(f"{surname[:k]}{DOTS}" for k in range(len(surname) - 1, 0, -1)))
     shorter = [f"{part} {initials}".strip() if words[:1] == [surname] else f"{initials} {part}".strip() for part in kept]
     widest = NAME_WIDTH / NAME_NARROWER[-1]
-    ways = (*((way, room) for room in (NAME_WIDTH, NAME_WIDTH / NARROWEST, widest) for way in (name, shorter[0])),
+    ways = (*[(way, room) for room in (NAME_WIDTH, NAME_WIDTH / NARROWEST, widest) for way in (name, shorter[0])],
             *((way, widest) for way in shorter))
     return next((way for way, room in ways if letter(plain(way), CAPTION).width <= room), shorter[-1])
 
@@ -255,7 +255,7 @@ def _fitted(parts: Mapping[str, str], sizes: tuple[float, ...], width: float, he
         laid = [letter(plain(line), size) for lines in wrapped.values() for line in lines]
         if not laid:
             return size, wide, wrapped
-        widest = max(line.width for line in laid)
+        widest = max([line.width for line in laid])
         tall = size * (1 + PITCH * (len(laid) - 1)) + 2 * _rise(laid[0], size)
         # Three lines and more need some air between the rules of their cell.
         if widest * wide <= width and tall <= height - (1.0 if len(laid) > 2 else 0.0) and len(laid) <= MOST:

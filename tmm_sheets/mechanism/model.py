@@ -143,8 +143,8 @@ class GroupKind(ABC):
         """Each link of the group with its outer pair; a guide holds the middle hinge, or the pin in a slot."""
         (first, middle, last), hinges, guides = tuple(self.orders[0]), iter(g.outer), iter(g.guides)
         corner, lengths = str(g.inner) if middle == "R" else g.outer[0], (*g.lengths, 0.0, 0.0)
-        return tuple(Leg(link, corner, next(hinges), length=length) if pair == "R" else Leg(link, corner, guide=next(guides))
-                     for link, pair, length in zip(g.links, (first, last), lengths, strict=False))
+        return tuple([Leg(link, corner, next(hinges), length=length) if pair == "R" else Leg(link, corner, guide=next(guides))
+                     for link, pair, length in zip(g.links, (first, last), lengths, strict=False)])
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         """Outer, inner and outer kinematic pair of a group in a mechanism."""

@@ -251,10 +251,10 @@ class BorderNode:
     def places(self, box: Box) -> list[Box]:
         """Places of its views in turn, their borders at whole millimetres."""
         if self.need is not None:
-            return [Box(*(float(round(x)) for x in box))]
+            return [Box(*[float(round(x)) for x in box])]
         found, at = list[Box](), box.y1 if self.axis else box.x0
         free = (box.height if self.axis else box.width) - self.gap * (len(self.children) - 1)
-        for child, size in zip(self.children, (share * free for share in self.shares), strict=True):
+        for child, size in zip(self.children, [share * free for share in self.shares], strict=True):
             found += child.places(Box(box.x0, at - size, box.x1, at) if self.axis else Box(at, box.y0, at + size, box.y1))
             at += -(size + self.gap) if self.axis else size + self.gap
         return found
@@ -372,7 +372,7 @@ def cut(boxes: Sequence[Box], nodes: Sequence[BorderNode]) -> BorderNode | None:
         runs = _runs([(b.x0, b.x1) if axis == 0 else (-b.y1, -b.y0) for b in boxes])
         if len(runs) > 1:
             parts = [cut([boxes[i] for i in run], [nodes[i] for i in run]) for _, _, run in runs]
-            gap = min(GAP, *(max(after[0] - before[1], 0.0) for before, after in pairwise(runs)))
+            gap = min(GAP, *[max(after[0] - before[1], 0.0) for before, after in pairwise(runs)])
             known = [part for part in parts if part is not None]
             return joined(axis, known, [b - a for a, b, _ in runs], gap) if len(known) == len(parts) else None
     return None

@@ -186,4 +186,4 @@ class Answered:
 
     def _name(self, questions: Questions) -> str:
         """What a thing is kept under: the questions that led to it and the answers of the project file."""
-        return fingerprint(self._about, *(part for asked in questions for part in (repr(asked), self.variant.answer(asked))))
+        return fingerprint(self._about, *[part for asked in questions for part in (repr(asked), self.variant.answer(asked))])

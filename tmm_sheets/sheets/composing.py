@@ -104,7 +104,7 @@ def _ink(canvas: Canvas) -> list[tuple[list[int], list[int]]]:
         for part, end in zip(canvas.parts, [part.first for part in canvas.parts[1:]] + [len(canvas.marks)], strict=True)]
     for group in canvas.groups:
         if group.part >= 0 and group.anchor is not None:
-            found[group.part][1].extend(n for n in range(group.first, group.end) if isinstance(canvas.marks[n], Text))
+            found[group.part][1].extend([n for n in range(group.first, group.end) if isinstance(canvas.marks[n], Text)])
     return found
 
 
@@ -322,7 +322,7 @@ def views_of(canvas: Canvas) -> tuple[View, ...]:
 def said(part: Part | None) -> str:
     """Name of a view: the letters of its title; without a view that of the frame."""
     if part is not None and part.title:
-        return "".join(run.text for run in letter(part.title, 5.0).runs)
+        return "".join([run.text for run in letter(part.title, 5.0).runs])
     if part is None or part.draw == FRAME:
         return tr("Frame and title block")
     return tr(VIEWS[part.draw].name if part.draw in VIEWS and VIEWS[part.draw].name else part.draw)
@@ -346,7 +346,7 @@ def lower_titles(canvas: Canvas) -> None:
         drawn = dense(canvas.marks[part.headed:end], 2.0)
         if not len(drawn):
             continue
-        top = max(float(drawn.imag.max()), *(_top(label) for label in canvas.labels if k <= label.part < last), -np.inf)
+        top = max(float(drawn.imag.max()), *[_top(label) for label in canvas.labels if k <= label.part < last], -np.inf)
         gap = float(dense(canvas.marks[part.first:part.headed], 2.0).imag.min()) - top
         if gap > FAR:
             for n in range(part.first, part.headed):

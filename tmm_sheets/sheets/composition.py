@@ -116,7 +116,7 @@ class _Way:
 
     def areas(self) -> dict[tuple[str, Any], float]:
         """Area that each view is meant to have, mm^2."""
-        return {_name(view): sum(leaf.area for leaf in node.leaves()) for parts in self.parts for view, node in parts}
+        return {_name(view): sum([leaf.area for leaf in node.leaves()]) for parts in self.parts for view, node in parts}
 
     def means(self, other: _Way) -> None:
         """Take over what another way means each view to have: only so are their costs alike."""
@@ -148,13 +148,13 @@ class _Way:
         moved = (zip(view.box, found[id(node)], strict=True) for view, node in views if not view.kind.place)
         if any(abs(a - b) > 3.0 for sides in moved for a, b in sides):
             return None
-        placed = replace(self.plan, views=tuple(_placed(view, node, found) for view, node in views))
+        placed = replace(self.plan, views=tuple([_placed(view, node, found) for view, node in views]))
         return tree.cost(room.width, room.height), placed
 
 
 def _in_columns(parts: list[tuple[ViewPlace, BorderNode]]) -> BorderNode:
     """The parts of a view one under another, in as many columns as their boxes begin at."""
-    columns = [[node for view, node in parts if view.box.x0 == x] for x in dict.fromkeys(view.box.x0 for view, _ in parts)]
+    columns = [[node for view, node in parts if view.box.x0 == x] for x in dict.fromkeys([view.box.x0 for view, _ in parts])]
     return joined(0, [joined(1, nodes, [1.0] * len(nodes)) for nodes in columns], [1.0] * len(columns))
 
 

@@ -131,7 +131,7 @@ def _free(table: Counts, sizes: Sequence[tuple[float, float]]) -> Iterator[tuple
     if not steps:
         return
     # Where the least of all is not free nothing is: the whole sheet is looked at once, for each size only what is left of it.
-    least = min(nx for nx, _ in steps.values()), min(ny for _, ny in steps.values())
+    least = min([nx for nx, _ in steps.values()]), min([ny for _, ny in steps.values()])
     i, j = (window_counts(table, *least) == 0).nonzero()
     if not len(i):
         return
@@ -196,15 +196,15 @@ def place_nearest(taken: Taken, sizes: Sequence[tuple[float, float]], inside: Bo
 
 def _distance_from_box(z: Points, box: Box) -> NDArray[np.float64]:
     """Distances of points from a box."""
-    x, y = (np.maximum(np.maximum(low - v, v - high), 0.0) for v, low, high in ((z.real, box.x0, box.x1), (z.imag, box.y0, box.y1)))
+    x, y = [np.maximum(np.maximum(low - v, v - high), 0.0) for v, low, high in ((z.real, box.x0, box.x1), (z.imag, box.y0, box.y1))]
     return np.asarray(np.hypot(x, y))
 
 
 def _ink_box(canvas: Canvas, k: int, inside: Box) -> Box:
     """What a part's ink takes."""
     i, j = np.nonzero(inked_cells(canvas, range(k, k + 1), inside))
-    return Box(*(float(edge) for edge in (inside.x0 + CELL * i.min(), inside.y0 + CELL * j.min(),
-                                          inside.x0 + CELL * (i.max() + 1), inside.y0 + CELL * (j.max() + 1))))
+    return Box(*[float(edge) for edge in (inside.x0 + CELL * i.min(), inside.y0 + CELL * j.min(),
+                                          inside.x0 + CELL * (i.max() + 1), inside.y0 + CELL * (j.max() + 1))])
 
 
 def cells_between(canvas: Canvas, inside: Box, lettering: bool = True) -> Taken:
@@ -270,7 +270,7 @@ def inked_cells(canvas: Canvas, parts: range, inside: Box, lettering: bool = Tru
         if known is None:
             marks = canvas.marks[span[0]:span[1]]
             z = np.concatenate((dense(marks, CELL), *map(_reach_points, labels))) if lettering \
-                else dense((mark for mark in marks if mark.by is None or mark.by.role != "text"), CELL)
+                else dense([mark for mark in marks if mark.by is None or mark.by.role != "text"], CELL)
             cells = Cells(inside, CELL)
             cells.add_points(z)
             known = canvas.inked[key] = cells.taken
@@ -289,7 +289,7 @@ def _under_title(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def _reach_points(label: Label) -> Points:
     """Points about a label's anchor as far away as its lettering may reach."""
     laid = letter(label.text, label.height)
-    width, height = (size + label.gap + REACH for size in (laid.width, laid.ascent + laid.descent))
+    width, height = [size + label.gap + REACH for size in (laid.width, laid.ascent + laid.descent)]
     if not label.away:
         return label.anchor + np.array([width, -width, 1j * height, -1j * height])
     u = label.away / abs(label.away)
@@ -302,7 +302,7 @@ def _cells_between(cells: NDArray[np.bool_], axis: int) -> tuple[NDArray[np.bool
     if cells.any():
         # A part is small on the sheet: nothing lies between its ink beyond it.
         inked = (np.logical_or.reduce(cells, axis=1 - k).nonzero()[0] for k in (0, 1))
-        reach = tuple(slice(n[0], n[-1] + 1) for n in inked)
+        reach = tuple([slice(n[0], n[-1] + 1) for n in inked])
         own, back = cells[reach], (slice(None, None, -1), slice(None))[::1 - 2 * axis]
         n = np.arange(own.shape[axis], dtype=np.int16).reshape((-1, 1) if axis == 0 else (1, -1))
         before = np.maximum.accumulate(np.where(own, n, np.int16(-1)), axis=axis)

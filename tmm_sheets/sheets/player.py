@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale, fit_standard, handy
-from tmm_sheets.construction.step import Helper, Plan, Step, value_at
+from tmm_sheets.construction.step import Helper, Plan, Step
 from tmm_sheets.drawing.canvas import Canvas, ScaleBook
 from tmm_sheets.drawing.marks import PlacedFrame, Role
 from tmm_sheets.errors import CannotBuild
@@ -136,7 +136,7 @@ def pick(project: Project, canvas: ScaleBook, name: str, symbol: str, unit: str,
 
 def standard(*fitted: tuple[float, float]) -> Scale:
     """Largest GOST 2.302 scale with which every span, m, takes no more than its room, mm."""
-    real, drawn = max((fit_standard(span * 1e3, room) for span, room in fitted), key=lambda scale: scale[0] / scale[1])
+    real, drawn = max([fit_standard(span * 1e3, room) for span, room in fitted], key=lambda scale: scale[0] / scale[1])
     return Scale("μ_l", real / drawn * 1e-3, tr("m/mm"))
 
 
@@ -249,7 +249,7 @@ class PlayerStage:
     def value(self, step: Step | str) -> Any:
         """Value of a step at the stage's position."""
         found = self.step(step)
-        return found.value if self.k is None else value_at(found, self.k)
+        return found.value if self.k is None else found.at(self.k)
 
     def at(self, step: Step | str) -> complex:
         """Point of the sheet of a step."""
@@ -314,5 +314,5 @@ def play(s: PlayerStage, steps: Iterable[Step | str] | None = None, style: str =
 
 def _ends(s: PlayerStage, step: Step, h: Helper) -> tuple[Step, ...]:
     """A helper line from the pole or the point of another step hangs on both."""
-    starts = (*([] if s.plan.pole is None else [s.plan[s.plan.pole]]), *(a for a in step.args if isinstance(a, Step)))
+    starts = (*([] if s.plan.pole is None else [s.plan[s.plan.pole]]), *[a for a in step.args if isinstance(a, Step)])
     return next(((a, step) for a in starts if a.rule.gives in ("point", "vector") and a.at(s.k or 0) == h.a), ())

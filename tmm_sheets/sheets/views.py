@@ -272,8 +272,8 @@ class Arrangement:
         names = list(dict.fromkeys(name for view in self.views for name in view.others))
         pairs = [pair for pair in combinations(names, 2) if not any(view.others.keys() >= set(pair) for view in self.views)]
         for way in ((), *((name,) for name in names), *pairs):
-            yield replace(self, views=tuple(replace(view, box=next((view.others[name] for name in way if name in view.others),
-                                                                   view.box)) for view in self.views))
+            yield replace(self, views=tuple([replace(view, box=next((view.others[name] for name in way if name in view.others),
+                                                                   view.box)) for view in self.views]))
 
     def fitted(self, parts: Collection[str]) -> Arrangement:
         """What is left of it, or stands instead of it, for a project that has only these parts of the results.
@@ -287,8 +287,8 @@ class Arrangement:
         for part in missing:
             if part in self.without:
                 return arrangement(self.without[part]).fitted(parts)
-        views = tuple(v for v in self.views if v.needs not in missing)
-        offers = tuple(v for v in self.offers if not v.needs or v.needs in parts)
+        views = tuple([v for v in self.views if v.needs not in missing])
+        offers = tuple([v for v in self.offers if not v.needs or v.needs in parts])
         if not any(v.needs for v in views):
             lacks, hints = zip(*(map(tell, MISSING.get(part, MISSING_TABLE)) for part in missing), strict=True)
             raise CannotBuild("; ".join(said.format(part=part) for said, part in zip(lacks, missing, strict=True)),

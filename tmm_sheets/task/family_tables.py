@@ -89,7 +89,7 @@ class Row:
 
 def holds_figure(head: str, figure: str) -> bool:
     """Whether a column, or a row, is that of a figure."""
-    low, dots, high = (part.strip() for part in head.partition(".."))
+    low, dots, high = [part.strip() for part in head.partition("..")]
     ends = (low, figure, high if dots else low)
     return head == figure or (all(end.isdecimal() and len(end) <= LONGEST for end in ends)
                               and int(ends[0]) <= int(figure) <= int(ends[2]))
@@ -168,7 +168,7 @@ def filled(scheme: str, values: Mapping[str, Choice]) -> str:
         keys = Template(line).get_identifiers()
         line = Template(line).substitute({key: values[key].text for key in keys})
         told = any(key.endswith(SOURCE) for key in keys)
-        sources = [part for part in dict.fromkeys(values[key].source for key in keys) if part and not told]
+        sources = [part for part in dict.fromkeys([values[key].source for key in keys]) if part and not told]
         if sources:
             written, _, comment = line.partition("#")
             line = f"{written.rstrip()}  # {'; '.join(filter(None, (comment.strip(), *sources)))}".lstrip()

@@ -320,7 +320,7 @@ CamDiagram = Annotated[tuple[tuple[Any, Any], ...], Reads(_diagram), Checks(_sha
 
 def _arrangement(value: Any) -> str:
     """Name of an arrangement."""
-    return _known(_name(value), (p.stem for p in resources.template("sheets").glob("*.toml")),
+    return _known(_name(value), [p.stem for p in resources.template("sheets").glob("*.toml")],
                   tell('unknown sheet, not in templates/sheets: "{name}"; {hint}'))
 
 

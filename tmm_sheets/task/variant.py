@@ -226,7 +226,7 @@ class Variant(Table):
         """
         if self.project.sheets is None:
             return self._called_for
-        return tuple(name for name in self.project.sheets if name not in _SECTIONS or getattr(self, name) is not None)
+        return tuple([name for name in self.project.sheets if name not in _SECTIONS or getattr(self, name) is not None])
 
     def drawable(self) -> tuple[str, ...]:
         """Arrangements of the sheets to draw, of which there must be at least one.

@@ -94,7 +94,7 @@ class Law(Motion):
 
     def at(self, order: int, x: Reals) -> Reals:
         """Share of the travel passed, or a derivative, at shares ``x`` of the phase."""
-        return self.forms[order](x, *(given.value for given in self.nodes))
+        return self.forms[order](x, *[given.value for given in self.nodes])
 
     @property
     def reverse(self) -> Law:
@@ -435,7 +435,7 @@ class PositionFunction(Motion):
     @property
     def phases(self) -> tuple[Phase, ...]:
         """The phases that take part of the turn, in order."""
-        return tuple(p for p in (self.rise, self.upper_dwell, self.fall, self.lower_dwell) if p.angle > 0)
+        return tuple([p for p in (self.rise, self.upper_dwell, self.fall, self.lower_dwell) if p.angle > 0])
 
     @property
     def stroke(self) -> float:

@@ -165,7 +165,7 @@ class GearPair(PairGeometry):
     def sliding_curve(self, share: Any) -> Plan:
         """Speeds and sliding at any points of the line: -1 at N1, 0 at the pole, 1 at the last point."""
         share = np.asarray(share, dtype=float)
-        plan = Plan("gear-sliding-between", tr("Specific sliding between the divisions"), "m", tuple(f"{v:g}" for v in share))
+        plan = Plan("gear-sliding-between", tr("Specific sliding between the divisions"), "m", tuple([f"{v:g}" for v in share]))
         return ge.sliding_plan(plan, self, self.engagement, np.maximum(-share, 0), np.maximum(share, 0))
 
     @cached_property

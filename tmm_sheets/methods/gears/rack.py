@@ -246,7 +246,7 @@ def drawn_positions(sizes: Plan, radius: Step, alpha: Step, parts: int) -> Plan:
 def _positions(name: str, rack: Rack, rolls: Any) -> Plan:
     """Positions of a rack that is known by numbers, for curves."""
     rolls = np.atleast_1d(np.asarray(rolls, dtype=float))
-    plan = Plan(name, tr("Generation by the rack"), "m", tuple(str(k) for k in range(len(rolls))))
+    plan = Plan(name, tr("Generation by the rack"), "m", tuple([str(k) for k in range(len(rolls))]))
     plan.add("φ", ROLLS, rolls)
     end = rack.tip_centre
     for size, value in (("r", rack.r), ("xm", rack.shift * rack.module), ("a", rack.half_width), ("u", end.real), ("y", end.imag)):

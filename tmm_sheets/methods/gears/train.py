@@ -64,8 +64,8 @@ class Train:
 
     def stage(self, m: Mesh) -> tuple[Mesh, ...]:
         """Meshes at one distance of the axes: those of a carrier whose planets turn together, or a pair whose axes stand still."""
-        return tuple(o for o in self.meshes if o is m or (m.carrier and o.carrier == m.carrier
-                                                          and self.link(o.planet) == self.link(m.planet)))
+        return tuple([o for o in self.meshes if o is m or (m.carrier and o.carrier == m.carrier
+                                                          and self.link(o.planet) == self.link(m.planet))])
 
     @property
     def stages(self) -> tuple[tuple[Mesh, ...], ...]:
@@ -79,7 +79,7 @@ class Train:
     @property
     def names(self) -> tuple[str, ...]:
         """All wheels by number, then the carriers."""
-        found = dict.fromkeys(name for m in self.meshes for name in (m.central, m.planet, m.carrier) if name)
+        found = dict.fromkeys([name for m in self.meshes for name in (m.central, m.planet, m.carrier) if name])
         return tuple(sorted(found, key=lambda name: (not is_wheel(name), int(name.rstrip("′")) if is_wheel(name) else 0, name)))
 
     @property

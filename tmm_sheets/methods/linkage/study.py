@@ -278,7 +278,7 @@ class Motion:
     @cached_property
     def between(self) -> Study:
         """The linkage at these angles."""
-        return self._study_at(self.turned, tuple("" for _ in self.turned))
+        return self._study_at(self.turned, tuple(["" for _ in self.turned]))
 
     @cached_property
     def _tried(self) -> Plan:

@@ -257,7 +257,7 @@ def _integration(upper: PlayerStage, lower: PlayerStage, m: FollowerMotion, symb
         label = last.removeprefix(f"{symbol}_")
         middle, carried = plan[f"{symbol}_m{label}"], plan[f"{symbol}_{label}′"]
         height = 1j * complex(middle.value).imag
-        start, end = (upper.frame(complex(plan[name].value).real + height) for name in (first, last))
+        start, end = [upper.frame(complex(plan[name].value).real + height) for name in (first, last)]
         upper.line(middle, start, end, "thin")
         upper.line(carried, upper.at(carried), start)
         play(upper, [f"{symbol}_P{label}′"])

@@ -58,7 +58,7 @@ def _profile_area(cam: Cam, table: tuple[float, float]) -> Callable[[int, int], 
 
     @cache
     def in_place(width: int, height: int) -> float:
-        scale, larger = (int(fitting(sizes * 1e3, (width - beside, height - over)).max()) for over in (with_table, alone))
+        scale, larger = [int(fitting(sizes * 1e3, (width - beside, height - over)).max()) for over in (with_table, alone)]
         if scale < 0:
             return 1.0
         mu, over = mus[scale], with_table
@@ -321,7 +321,7 @@ def _radii(project: Project, options: dict[str, Any]) -> tuple[str, list[list[st
     columns = [(in_degrees("φ"), np.degrees(inv.phi)), *(
         (in_mm(name), inv.plan.length(inv.plan["O"], end).value * 1e3) for name, end in measured.items())]
     return tr("Radii of the profile"), [[tr("No."), *(head for head, _ in columns)], *(
-        [inv.plan.labels[k], *(fixed(float(values[k]), 2) for _, values in columns)] for k in distinct(inv.plan.labels, inv.phi))]
+        [inv.plan.labels[k], *[fixed(float(values[k]), 2) for _, values in columns]] for k in distinct(inv.plan.labels, inv.phi))]
 
 
 radii = listed.Upright(_radii)

@@ -114,7 +114,7 @@ def _row(ink: InkIndex, closed: Box, marks: Sequence[tuple[int, float, str]], pa
     if 0.04 * off >= most:
         return None
     laid = [letter(text, HEIGHT) for *_, text in marks]
-    wide, high = max(each.width for each in laid), max(each.ascent + each.descent for each in laid)
+    wide, high = max([each.width for each in laid]), max([each.ascent + each.descent for each in laid])
     middle = 0.5 * (marks[0][1] + marks[-1][1])
     v = path(middle + 0.5, 0.0) - path(middle - 0.5, 0.0)
     least = min((wide + BETWEEN) / max(abs(v.real), 1e-9), (high + BETWEEN) / max(abs(v.imag), 1e-9))
@@ -129,8 +129,8 @@ def _row(ink: InkIndex, closed: Box, marks: Sequence[tuple[int, float, str]], pa
             return Box((at - half).real, (at - half).imag, (at + half).real, (at + half).imag)
 
         def met(box: Box) -> int:
-            over = sum(min(box.x1, other.x1) > max(box.x0, other.x0) and min(box.y1, other.y1) > max(box.y0, other.y0)
-                       for other in (closed, *boxes[-1:]))
+            over = sum([min(box.x1, other.x1) > max(box.x0, other.x0) and min(box.y1, other.y1) > max(box.y0, other.y0)
+                       for other in (closed, *boxes[-1:])])
             return ink.count_in(box) + 10 * over
 
         begin, tried = max(wanted, before + least), list[tuple[int, float, float]]()

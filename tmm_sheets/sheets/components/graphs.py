@@ -153,7 +153,7 @@ def column(values: Sequence[float] | Floats, digits: int = 4, least: int = 0) ->
 def rows(positions: Iterable[tuple[int, str]], columns: Sequence[tuple[Any, ...]]) -> list[list[str]]:
     """Heads of some columns, and a row for each position with its number and its label; of a column its significant digits last."""
     cells = [column(values, *digits) for _, values, *digits in columns]
-    return [[tr("No."), *(name for name, *_ in columns)], *([label, *(column[i] for column in cells)] for i, label in positions)]
+    return [[tr("No."), *[name for name, *_ in columns]], *([label, *(column[i] for column in cells)] for i, label in positions)]
 
 
 def row(name: str, values: Sequence[float] | Floats) -> list[str]:
@@ -167,7 +167,7 @@ def row(name: str, values: Sequence[float] | Floats) -> list[str]:
         power = 3 * -(order // 3)
         name, values, order = name.replace(",", f"·10^{{{power}}},", 1), np.asarray(values) * 10.0**power, order + power
     decimals = max(0, (3 if len(values) <= 13 else 2) - order)
-    return [name, *(fixed(float(v), decimals) for v in values)]
+    return [name, *[fixed(float(v), decimals) for v in values]]
 
 
 # --- over the cycle -----------------------------------------------------------------------------------------------------------
@@ -237,12 +237,12 @@ class Quantity:
     @property
     def low(self) -> float:
         """The lowest ordinate, the axis included."""
-        return min(0.0, *(float(np.min(c.values)) for c in self.curves))
+        return min(0.0, *[float(np.min(c.values)) for c in self.curves])
 
     @property
     def high(self) -> float:
         """The highest ordinate, the axis included."""
-        return max(0.0, *(float(np.max(c.values)) for c in self.curves))
+        return max(0.0, *[float(np.max(c.values)) for c in self.curves])
 
     @property
     def span(self) -> float:
@@ -314,7 +314,7 @@ def need(project: Project, columns: Sequence[Column]) -> Need:
     least = [(wide * len(shape), TITLE + max(_least_height(project, column) for column in shape)) for shape in _shapes(columns)]
 
     def lacking(width: float, height: float) -> float:
-        needed = min(max(w / width, h / height) for w, h in least) if min(width, height) > 0 else inf
+        needed = min([max(w / width, h / height) for w, h in least]) if min(width, height) > 0 else inf
         return needed + JUST * (needed > 1.0)
 
     return Need(least=(min(w for w, _ in least), 0.6 * min(h for _, h in least)), most=(inf, ENOUGH * max(h for _, h in least)),

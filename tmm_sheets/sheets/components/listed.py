@@ -80,7 +80,7 @@ class Form(NamedTuple):
     @property
     def widths(self) -> list[float]:
         """Widths of the columns with what parts them, mm."""
-        return [max(letter(line, self.height).width for line in lines) + APART for lines in self.columns]
+        return [max([letter(line, self.height).width for line in lines]) + APART for lines in self.columns]
 
     @property
     def size(self) -> tuple[float, float]:
@@ -95,7 +95,7 @@ class Form(NamedTuple):
     def pitch(self) -> float:
         """Distance of the lines, mm: no exponent stands in an index of the line above it."""
         laid = [[letter(line, self.height) for line in lines] for lines in self.columns]
-        return max([self.step, *(one.descent + other.ascent + CLEAR for column in laid for one, other in pairwise(column))])
+        return max([self.step, *[one.descent + other.ascent + CLEAR for column in laid for one, other in pairwise(column)]])
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,7 @@ def table(canvas: Canvas, left: Box, rows: list[list[str]], tallest: float = 11.
     top = left.y1
     for part in parts:
         width = (left.width - first) / (len(parts[0][0]) - 1)
-        height = size_in(high) if max(letter(cell, 3.5).width for line in part for cell in line[1:]) <= width - 1 else 2.5
+        height = size_in(high) if max([letter(cell, 3.5).width for line in part for cell in line[1:]]) <= width - 1 else 2.5
         canvas.table(complex(left.x0, top), widened([first, *[width] * (len(part[0]) - 1)], part, height), part, high, height)
         top -= high * len(part)
 
@@ -210,7 +210,7 @@ def folded(rows: Rows, count: int) -> list[list[str]]:
     head, *body = rows
     each = -(-len(body) // count)
     body = [*body, *[[""] * len(head)] * (each * count - len(body))]
-    return [[*head] * count, *([cell for row in body[k::each] for cell in row] for k in range(each))]
+    return [[*head] * count, *[[cell for row in body[k::each] for cell in row] for k in range(each)]]
 
 
 @dataclass(frozen=True)

@@ -52,7 +52,7 @@ def engagement_place(project: Project, view: ViewPlace) -> BorderNode:
 
     def drawn(width: int, height: int) -> float:
         mu, broken = gear_picture.picture(pair, width, height)
-        whole = width if broken else min(2 * min(w.ra for w in pair.wheels) / mu.mu + BESIDE, width)
+        whole = width if broken else min(2 * min([w.ra for w in pair.wheels]) / mu.mu + BESIDE, width)
         return (whole + (width - whole) * OTHER) * height * reached(mu.mm(tooth), TOOTH)
 
     return stepped(view, (180.0, 300.0), drawn)
@@ -94,7 +94,7 @@ def mesh(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) ->
 
 def mesh_height(gear: GearPair) -> float:
     """Height of the meshing zone with the clearances, m."""
-    return 2.0 * float(max(abs(w.ra - w.rw) + gear.clearance * gear.m for w in gear.wheels))
+    return 2.0 * float(max([abs(w.ra - w.rw) + gear.clearance * gear.m for w in gear.wheels]))
 
 
 def mesh_scale(gear: GearPair, width: float, height: float) -> Scale:

@@ -198,8 +198,8 @@ class Radii:
         self.texts = {key: f"{symbol % wheel.number} = {fixed(getattr(wheel, key) * 1e3, 2)}" for key, symbol, _ in CIRCLES}
         self.outer = min(self.tips.values()) - NAME_INSIDE_MM
         self.far: float = picture.away(wheel) * pi / 2
-        self.drawn = InkIndex(m for m in self.canvas.marks[picture.first:]
-                              if not (isinstance(m, Arc) and abs(m.centre - self.centre) < 1e-6))
+        self.drawn = InkIndex([m for m in self.canvas.marks[picture.first:]
+                              if not (isinstance(m, Arc) and abs(m.centre - self.centre) < 1e-6)])
 
     def draw(self) -> None:
         """Draw each radius that has room, others by their names."""

@@ -54,7 +54,7 @@ def picture_room(gear: GearPair, width: float, height: float) -> float:
 
     And most of the smaller wheel across the width.
     """
-    smaller = 1.45 * min(w.ra for w in gear.wheels)
+    smaller = 1.45 * min([w.ra for w in gear.wheels])
     return float(min(height - 60 if gear.internal else 2 / 3 * (height - 16), (width - 12) / smaller * gear.height))
 
 
@@ -72,9 +72,9 @@ def picture(gear: GearPair, width: float, height: float) -> tuple[Scale, Broken]
     whole: Scale = gear.picture_scale(picture_room(gear, width, height))
     tooth = highest_tooth(gear)
     if not gear.internal:
-        uncut = standard((2 * max(w.ra for w in gear.wheels), width - 2 * BESIDE),
-                         (gear.a_w + sum(w.ra for w in gear.wheels), height - 16.0 - 2 * BESIDE))
-        small, spare = min(w.ra for w in gear.wheels), height - 16.0 - whole.mm(gear.a_w)
+        uncut = standard((2 * max([w.ra for w in gear.wheels]), width - 2 * BESIDE),
+                         (gear.a_w + sum([w.ra for w in gear.wheels]), height - 16.0 - 2 * BESIDE))
+        small, spare = min([w.ra for w in gear.wheels]), height - 16.0 - whole.mm(gear.a_w)
         cuts_both = whole.mm(small) + 4 > MOSTLY * spare or 2 * whole.mm(small) > width - 2 * BESIDE
         if whole.mu < uncut.mu <= whole.mu / (HALF if cuts_both else NEARLY) and uncut.mm(tooth) >= TOOTH:
             return uncut, WHOLE
@@ -94,11 +94,11 @@ def picture(gear: GearPair, width: float, height: float) -> tuple[Scale, Broken]
 
 def highest_tooth(gear: GearPair) -> float:
     """Height of the higher teeth of a pair, m."""
-    return float(max(abs(w.ra - w.rf) for w in gear.wheels))
+    return float(max([abs(w.ra - w.rf) for w in gear.wheels]))
 
 
 def _fits(gear: GearPair, scale: Scale, broken: Broken, width: float, height: float) -> bool:
-    left, right, below, above = (length / scale.mu for length in _broken_extent(gear, scale, broken))
+    left, right, below, above = [length / scale.mu for length in _broken_extent(gear, scale, broken)]
     return left + right <= width - 6.0 - 2 * BESIDE and below + above <= height - 16.0 - len(broken) * HUB - 2 * UNDER
 
 
@@ -394,7 +394,7 @@ class GearPicture:
             # the side of the centre is the left of a .. b
             a, b = (a, b) if side * (np.conj(b - a) * (centre - a)).imag > 0 else (b, a)
             # No line may run through its lettering: in a ring the tangents of its involute lie over the pinion's root circle.
-            ink = InkIndex(m for n, m in enumerate(c.marks) if n >= self.first and n not in self.spokes)
+            ink = InkIndex([m for n, m in enumerate(c.marks) if n >= self.first and n not in self.spokes])
             met = {by: crossed(ink, a, b, by, text) for by in inside + DIMENSION + np.arange(0.0, FURTHEST, 0.5)}
             c.dimension(a, b, min(met, key=lambda by: met[by]), text, factor=1e3 * self.mu.mu)
 

@@ -85,7 +85,7 @@ class Dense:
 
     def times(self, half: float) -> float:
         """How many times it can be enlarged in a window of a radius, mm; 0 where that is too small for it."""
-        return max((t for t in ENLARGEMENTS if t * self.reach <= self.filled * half), default=0.0)
+        return max([t for t in ENLARGEMENTS if t * self.reach <= self.filled * half], default=0.0)
 
     def factor(self, half: float) -> Scale:
         """Scale factor of the detail in such a window."""
@@ -179,12 +179,12 @@ def dense(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
 
 def next_name(canvas: Canvas) -> str:
     """Roman number of the next detail of a sheet, by those that stand there."""
-    return NAMES[sum(part.title.split(" ")[0] in NAMES for part in canvas.parts)]
+    return NAMES[sum([part.title.split(" ")[0] in NAMES for part in canvas.parts])]
 
 
 def nth_dense_place(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[Corner | Crowd]:
     """The dense place that the ``nth`` detail is of, or none: those before it are drawn, or found no room."""
-    n = int(options.get("nth", 1)) - 1 - sum(part.draw == VIEW and bool(part.title) for part in canvas.parts)
+    n = int(options.get("nth", 1)) - 1 - sum([part.draw == VIEW and bool(part.title) for part in canvas.parts])
     return _every(project, canvas)[n:n + 1]
 
 
@@ -265,7 +265,7 @@ class Corner(Dense):
                 same.append(label)
         # Long vectors that run side by side have their names together, which is that of no single step.
         names = [one[0]._replace(text=", ".join(label.text for label in one), by=None) for one in bundles if len(one) > 1]
-        canvas.labels[:] = [*(label for label in canvas.labels if label not in own), *names]
+        canvas.labels[:] = [*[label for label in canvas.labels if label not in own], *names]
         no_more_zero(canvas, self)
         return radius
 
@@ -299,7 +299,7 @@ class Corner(Dense):
 
     def _free_radius(self, canvas: Canvas) -> float:
         """Radius of the circle round the corners, mm: the least that runs over no lettering, the usual one where all do."""
-        boxes = [np.abs(text_box(m) - self.centre) for m in canvas.marks if isinstance(m, Text) and abs(m.at - self.centre) < 40.0]
+        boxes = [np.abs(text_box(m) - self.centre) for m in canvas.marks if type(m) is Text and abs(m.at - self.centre) < 40.0]
         usual = self.reach + 1.5
         return next((r for r in usual + 0.5 * np.arange(8)
                      if not any(b.min() < r + 0.2 and b.max() > r - 0.2 for b in boxes)), usual)
@@ -348,8 +348,8 @@ def dense_corners(canvas: Canvas, polygons: Mapping[str, Polygon], whole: Sequen
         k = plan.labels.index(frame.position) if frame.position else 0
         steps: dict[str, Step] = {step.name: step for _, tail, head in vectors for step in (tail, head)}
         points = {name: complex(frame(complex(step.at(k)))) for name, step in steps.items()}
-        drawn = tuple(Vector(s, a.name, b.name) for s, a, b in vectors if abs(points[a.name] - points[b.name]) > ONE)
-        there = dict.fromkeys(name for _, a, b in drawn for name in (a, b))
+        drawn = tuple([Vector(s, a.name, b.name) for s, a, b in vectors if abs(points[a.name] - points[b.name]) > ONE])
+        there = dict.fromkeys([name for _, a, b in drawn for name in (a, b)])
         of_plan = list[Corner]()
         for names in points_together({name: points[name] for name in there}, drawn):
             z, scale = np.array([points[name] for name in names]), replace(canvas.scales[plan.name], mu=frame.mu[1])
@@ -442,7 +442,7 @@ class Crowd(Dense):
 
         for group in [group for group in canvas.groups if group.first in drawn]:
             own = range(group.first, group.end)
-            line, fill = marks[group.first], next((m for m in (marks[n] for n in reversed(own)) if isinstance(m, Fill)), None)
+            line, fill = marks[group.first], next((m for m in [marks[n] for n in reversed(own)] if isinstance(m, Fill)), None)
             if group.kind == "dot" and fill is not None:
                 here = complex(fill.points.mean())
                 if abs(at(here) - middle) < half - 1.0:

@@ -300,8 +300,8 @@ class RowChoice:
                 parted = [spans[i:i + per_row] for i in range(0, len(spans), per_row)]
                 wide = dict[int, float]()
                 for row in parted:
-                    wide[len(row)] = max(wide.get(len(row), 0.0), sum(s.width for s in row))
-                self._ways[per_row] = rows, [*wide.items()], sum(max(s.height for s in row) for row in parted), len(parted)
+                    wide[len(row)] = max(wide.get(len(row), 0.0), sum([s.width for s in row]))
+                self._ways[per_row] = rows, [*wide.items()], sum([max([s.height for s in row]) for row in parted]), len(parted)
 
     def most_room(self, width: float, height: float) -> tuple[float, int]:
         """Rows with which the plans come out largest, and the scale factor they need; infinite where lettering takes the place."""
@@ -351,7 +351,7 @@ def _velocity_spans(project: Project, options: dict[str, Any]) -> tuple[list[Box
     real = [plan_extent(plan, i) for i in shown]
     mu = longest(plan, shown) / LONGEST
     shares = [one / mu for one in own_factors(_sizes(real), mu)]
-    enlarged = [Box(*(x / share for x in s)) for s, share in zip(real, shares, strict=True)]
+    enlarged = [Box(*[x / share for x in s]) for s, share in zip(real, shares, strict=True)]
     return enlarged, float((_longest(plan, shown) / shares).max())
 
 

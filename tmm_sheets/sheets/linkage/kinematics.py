@@ -457,7 +457,7 @@ def _force_over_path(project: Project, s: PlayerStage, strokes: Strokes, along: 
     """A diagram of a force over the path, from the axis and back to it, mm, and the angles where it acts, rad."""
     turned, values = diagram
     acting = np.flatnonzero(values)
-    xs = along(np.real(s.frame(project.study_at(turned, tuple("" for _ in turned)).positions.points[strokes.output].value)))
+    xs = along(np.real(s.frame(project.study_at(turned, tuple(["" for _ in turned])).positions.points[strokes.output].value)))
     curve = xs[acting] + 1j * (y0 + values[acting] / mu)
     return np.array([complex(curve[0].real, y0), *curve, complex(curve[-1].real, y0)]), turned[acting]
 

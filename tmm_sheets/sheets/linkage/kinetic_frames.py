@@ -184,7 +184,7 @@ def _loaded(points: Iterable[complex], shown: list[Shown], about: complex, more:
     """
     every = [(s.at, arrow * (1 + 7.0 / abs(arrow))) for s, arrow in arrows(shown, share)]  # with their labels
     every += [(point, beside) for point in points for beside in (11.0 + 0j, -11.0 + 0j, 8.0j, -11.0j)]  # symbols of pairs
-    every += [*((force.foot(about), 0j) for force in (shown if armed is None else armed)), *more]
+    every += [*[(force.foot(about), 0j) for force in (shown if armed is None else armed)], *more]
     z, d = np.array(every, complex).T
     return z, d
 
@@ -312,7 +312,7 @@ def hinge_of(project: Project, couple: Couple) -> str | None:
 def arrows(shown: Iterable[Shown], share: float = 1.0) -> list[tuple[Shown, complex]]:
     """Arrow of each force in mm, a ``share`` of its usual length; forces along one ray from one point get different lengths."""
     forces = sorted(shown, key=lambda s: abs(s.vector))
-    size = max((abs(a.at - b.at) for a in forces for b in forces), default=0.0)
+    size = max([abs(a.at - b.at) for a in forces for b in forces], default=0.0)
     found: list[tuple[Shown, complex]] = []
     for s in forces:
         length = share * (SHORT + (LONG - SHORT) * (abs(s.vector) / abs(forces[-1].vector)) ** 0.5)

@@ -402,7 +402,7 @@ def equation(terms: list[str], values: list[str], width: float, most: int) -> tu
 def _broken(text: str, height: float, width: float, most: int) -> list[str]:
     """A text on as few lines as it needs; none where so many are not enough."""
     found = (wrapped(text, height, count) for count in range(1, most + 1))
-    return next((lines for lines in found if max(letter(line, height).width for line in lines) <= width), [])
+    return next((lines for lines in found if max([letter(line, height).width for line in lines]) <= width), [])
 
 
 def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

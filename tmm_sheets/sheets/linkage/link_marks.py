@@ -198,7 +198,7 @@ def outlines(s: PlayerStage, pos: Positions, shape: Shape) -> list[tuple[str, ..
         return list(shape.arms)
     p = {name: complex(s.value(pos.points[name])) for name in names}
     z = list(p.values())
-    size, u = max(abs(q - z[0]) for q in z), z[1] - z[0]
+    size, u = max([abs(q - z[0]) for q in z]), z[1] - z[0]
     if len(z) == 2 or not abs(u) or max(abs(((q - z[0]) * np.conj(u)).imag) for q in z) < 1e-6 * size * abs(u):
         return [along_bar(s, pos, shape), *shape.arms]
     if names[0] == pos.mechanism.crank.pivot and shape.link == pos.mechanism.crank.link:
@@ -342,7 +342,7 @@ def _draw_bar(s: PlayerStage, pos: Positions, shape: Shape, hinges: list[complex
     if style == "main":
         _corners(s, pos, shape)
     for line in outlines(s, pos, shape):
-        pen = s.pen(pos.directions[shape.link], "link", *(pos.points[name] for name in line))
+        pen = s.pen(pos.directions[shape.link], "link", *[pos.points[name] for name in line])
         points = [s.at(pos.points[name]) for name in (line if style == "main" else (line[0], line[-1]))]
         symbols.bar(pen, points, hinges, style)
         for end in (end for end in ends if (end.arm or line) == line and (end.arm or line not in shape.arms)):

@@ -97,7 +97,7 @@ def room(project: Project, of: Callable[..., list[list[str]]], *about: Any) -> l
     height, step = LETTERS[0]
     with on_paper(SHEETS):
         # Each equation in one line, then broken: rather a text that says less than smaller letters.
-        parts = ((n, tuple(part for line in lines for part in broken(line, width, height)))
+        parts = ((n, tuple([part for line in lines for part in broken(line, width, height)]))
                  for n, lines in enumerate(of(project, *about)) for width in WIDTHS)
         return [Needed(*Form([[*lines]], height, step, 0.0).size, FEWER ** n) for n, lines in dict.fromkeys(parts)]
 
@@ -287,7 +287,7 @@ def _sum(terms: Sequence[Term]) -> str:
 def _worked_out(terms: Sequence[Term], result: Quantity, of_sum: Callable[[Any, Any], Any] = lambda total, last: total,
                 last: float = 1.0) -> str:
     """What a sum gives, in numbers; ``of_sum`` makes the whole formula of it and of a ``last`` number."""
-    values = dict.fromkeys((*(value for term in terms for value in term.values), last))  # what is alike is written alike
+    values = dict.fromkeys((*[value for term in terms for value in term.values], last))  # what is alike is written alike
     at = {value: Argument(n) for n, value in enumerate(values)}
     total: Any = Constant(0.0)
     for term in terms:
