@@ -6,7 +6,7 @@ from importlib import import_module
 import pytest
 
 ROOMS = ("construction.arithmetic", "construction.expression", "construction.scale", "task.edited_text",
-         "mechanism.model", "mechanism.structure")
+         "mechanism.model", "mechanism.groups")
 
 
 @pytest.mark.parametrize("room", ROOMS)

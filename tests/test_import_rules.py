@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1] / "tmm_sheets"
 MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts): p for p in ROOT.rglob("*.py")}
-NEUTRAL = ("apart box csv_tables defects encodings errors files kept meanings numbers program quoting resources progress "
+NEUTRAL = ("apart box csv_tables defects encodings errors files kept meanings numbers quoting resources "
            "spelling terminal toml_file toml_lines version words")
 METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.integration"
 
@@ -19,7 +19,6 @@ RULES = {
     # room: (what it imports at run time, what else it names in annotations)
     "mechanism": ("construction.step", "construction mechanism.groups methods.linkage"),
     "mechanism.groups": ("construction mechanism", "methods.linkage"),
-    "mechanism.structure": ("mechanism", ""),
     "construction": ("", ""),
     "drawing": ("", ""),
     "methods": ("construction", ""),
@@ -50,7 +49,7 @@ RULES = {
     "protocols": ("construction sheets", "project"),
     "record": ("construction drawing project result_files results sheets", ""),
     "living": ("construction drawing mechanism.groups methods.flywheel methods.linkage note project record results task", ""),
-    "sheets": ("construction drawing mechanism.structure", f"project mechanism {METHODS}"),
+    "sheets": ("construction drawing mechanism.groups", f"project mechanism {METHODS}"),
     "backends": ("drawing", ""),
     "output": ("backends catalogue drawing explain project sheets task.title_entries", "task"),
     "output.batch": ("catalogue compare.measured living note output project task.title_entries", ""),
@@ -70,11 +69,10 @@ RULES = {
     "lab": ("", ""),
     "lab.bench": (f"backends catalogue construction drawing explain mechanism {METHODS} output project results sheets task", ""),
     "lab.stress": ("construction mechanism methods.linkage project task", ""),
-    "localized_cli": ("completion", ""),
     "completion": ("catalogue drawing note output project protocols record results task.edited_text", ""),
     "cli": ("api backends catalogue compare drawing explain lab living note output page project protocols record "
-            "result_files results localized_cli sheets summary task", ""),
-    "__main__": ("cli completion localized_cli", ""),
+            "result_files results sheets summary task completion", ""),
+    "__main__": ("cli completion", ""),
     **dict.fromkeys(NEUTRAL.split(), ("", "")),
 }
 """What each room may import besides itself and the neutral modules; a row holds for all below it that has none of its own."""
@@ -85,7 +83,8 @@ LIBRARIES = {
     "matplotlib": "backends.png lab.bench.records optimising.optimum",
     "pydantic": "api task.values task.schema task.messages task.variant task.title_entries task.keys "
                 "task.family_folder task.family_tables compare.group compare.placing",
-    "pydantic_core": "task.messages task.keys task.schema task.values result_files", "cv2": "compare.photo", "pypdfium2": "compare.photo",
+    "pydantic_core": "task.messages task.keys task.schema task.values result_files",
+    "cv2": "compare.photo", "pypdfium2": "compare.photo",
     "shapely": "drawing sheets methods lab.bench compare",
     "typst": "note.typst_writer", "docx": "note.docx_writer",
     "starlette": "page", "uvicorn": "page.serving", "openpyxl": "csv_tables",

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tmm_sheets import kept, program
+from tmm_sheets import kept
 
 
 @pytest.fixture
@@ -148,14 +148,14 @@ def test_processes_write_at_once(place):
 
 def test_the_program_is_known_by_its_content(place):
     """The same whether it was read or what was found is kept; another one for another file."""
-    program.source_fingerprints.cache_clear()
+    kept.source_fingerprints.cache_clear()
     with kept.unused():
-        read = program.program(), program.maker()
-    program.source_fingerprints.cache_clear()
-    assert (program.program(), program.maker()) == read
-    program.source_fingerprints.cache_clear()
-    assert (program.program(), program.maker()) == read
-    assert program.fingerprint("a", "b") != program.fingerprint("ab")
+        read = kept.program(), kept.maker()
+    kept.source_fingerprints.cache_clear()
+    assert (kept.program(), kept.maker()) == read
+    kept.source_fingerprints.cache_clear()
+    assert (kept.program(), kept.maker()) == read
+    assert kept.fingerprint("a", "b") != kept.fingerprint("ab")
 
 
 def test_a_change_of_the_program_is_seen(tmp_path, place):
@@ -168,7 +168,7 @@ def test_a_change_of_the_program_is_seen(tmp_path, place):
     old = 1_700_000_000
     for path in (*(tmp_path / "tmm_sheets").rglob("*"), *(tmp_path / "templates").rglob("*")):
         os.utime(path, (old, old))
-    code = "from tmm_sheets import program; print(program.program(), program.maker())"
+    code = "from tmm_sheets import kept; print(kept.program(), kept.maker())"
 
     def told():
         return subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": str(tmp_path)}, cwd=tmp_path,

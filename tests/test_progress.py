@@ -5,14 +5,14 @@ from time import sleep
 
 import pytest
 
-from tmm_sheets import progress
+from tmm_sheets import terminal
 
 
 @pytest.fixture
 def watched(monkeypatch):
     """Makes of what stands for standard error in a test a terminal, and patience short."""
     def watch(patience):
-        monkeypatch.setattr(progress, "PATIENCE", patience)
+        monkeypatch.setattr(terminal, "PATIENCE", patience)
         monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
 
     return watch
@@ -20,7 +20,7 @@ def watched(monkeypatch):
 
 def test_one_long_step_is_told(watched, capsys):
     watched(0.05)
-    with progress.Progress() as told:
+    with terminal.Progress() as told:
         told.say("looking for the frame ...")
         told.late.join()
         assert capsys.readouterr().err == "\r\033[Klooking for the frame ..."
@@ -29,7 +29,7 @@ def test_one_long_step_is_told(watched, capsys):
 
 def test_short_work_is_silent(watched, capsys):
     watched(60.0)
-    with progress.Progress() as told:
+    with terminal.Progress() as told:
         told.say("reading ...")
         told.say("writing ...")
     assert capsys.readouterr().err == ""
@@ -37,8 +37,8 @@ def test_short_work_is_silent(watched, capsys):
 
 
 def test_nothing_is_told_to_a_file(capsys, monkeypatch):
-    monkeypatch.setattr(progress, "PATIENCE", 0.0)
-    with progress.Progress() as told:
+    monkeypatch.setattr(terminal, "PATIENCE", 0.0)
+    with terminal.Progress() as told:
         told.say("reading ...")
         sleep(0.01)
         told.say("writing ...")

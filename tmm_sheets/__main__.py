@@ -64,9 +64,9 @@ def run(arguments: list[str]) -> int:
 
 
 def _run(arguments: list[str]) -> int:
-    from tmm_sheets import localized_cli
+    from tmm_sheets import cli
 
-    with localized_cli.chosen(arguments):
+    with cli.chosen(arguments):
         return _carried_out(arguments)
 
 

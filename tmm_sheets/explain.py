@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from tmm_sheets.construction.step import SearchCount, Step, ordered, parents
 from tmm_sheets.numbers import of_reader
-from tmm_sheets.progress import Stopwatch
+from tmm_sheets.terminal import Stopwatch
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:

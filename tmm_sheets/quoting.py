@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import shlex
-import subprocess
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
@@ -21,7 +19,11 @@ def command(*arguments: str | Path) -> str:
 def quoted(arguments: Iterable[str]) -> str:
     """Arguments as they are typed in a shell: in quotes where one of them has spaces or signs that the shell would take for its."""
     if os.name == "nt":
+        import subprocess
+
         return subprocess.list2cmdline(arguments)
+    import shlex
+
     return " ".join(one if re.fullmatch(r"[\w@%+=:,./-]+", one) else shlex.quote(one) for one in arguments)
 
 

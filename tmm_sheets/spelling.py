@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Iterable
-from difflib import get_close_matches
 
 from tmm_sheets.words import either, marked, tell
 
@@ -28,6 +27,8 @@ def near(word: str, known: Iterable[str], most: int = 1, alike: float = ALIKE) -
     words that are only spelt alike; capitals do not count, nor does which alphabet a letter is of that looks the same in both.
     ``flywheel.J`` is ``flywheel.J_flywheel``, ``shaper`` is ``lugansk/shaper``.
     """
+    from difflib import get_close_matches
+
     there = list(dict.fromkeys(known))
     small = latin(word).casefold()
     folded: dict[str, list[str]] = {}

@@ -19,9 +19,9 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink import interrupted, letters
 from tmm_sheets.drawing.lettering import glyph
 from tmm_sheets.drawing.marks import Arc, Drawing, Form, FormField, Line, Polyline, Text, View
+from tmm_sheets.drawing.paper import draw_frame
 from tmm_sheets.drawing.placing import place
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.drawing.title_block import draw_frame
 from tmm_sheets.project import Project
 from tmm_sheets.resources import template
 from tmm_sheets.sheets.sheet import composed

@@ -11,7 +11,7 @@ from tmm_sheets.backends import dxf, hpgl, pdf, png, svg
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Drawing
 from tmm_sheets.drawing.styles import line_types
-from tmm_sheets.drawing.title_block import draw_frame
+from tmm_sheets.drawing.paper import draw_frame
 canvas = Canvas()
 draw_frame(canvas, {"designation": "ТММ.КП", "title": "Лист"}, "1", 1, 4)
 for i, style in enumerate(line_types()):

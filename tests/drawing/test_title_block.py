@@ -9,8 +9,7 @@ from tmm_sheets.__main__ import run
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter, plain
 from tmm_sheets.drawing.marks import Line, Polyline, Text
-from tmm_sheets.drawing.paper import A1
-from tmm_sheets.drawing.title_block import FIELDS, block, draw_frame
+from tmm_sheets.drawing.paper import A1, FIELDS, block, draw_frame
 from tmm_sheets.project import Project
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import composing

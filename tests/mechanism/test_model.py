@@ -6,9 +6,8 @@ import pytest
 
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets import catalogue
-from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR
+from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, decompose
 from tmm_sheets.mechanism.model import Crank, Guide, LinkPoint, Mechanism, Pair, StructuralGroup
-from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.task.assembly import mechanism_of
 
 

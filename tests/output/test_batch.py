@@ -22,8 +22,8 @@ from tmm_sheets.output import batch, building
 from tmm_sheets.output.batch import Outcome
 from tmm_sheets.output.build_store import RECORD, Archive, BuildRecord
 from tmm_sheets.output.building import Order
-from tmm_sheets.progress import Bar
 from tmm_sheets.sheets import sheet
+from tmm_sheets.terminal import Bar
 
 ROOT = Path(__file__).parents[2]
 CAM = from_file("lugansk/cam_flat")

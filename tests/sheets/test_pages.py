@@ -8,8 +8,7 @@ import pytest
 from tmm_sheets import __main__, catalogue
 from tmm_sheets.cli.options import PAPERS
 from tmm_sheets.drawing.marks import Line, Polyline, Text, flat
-from tmm_sheets.drawing.paper import A1, SIDES, Paper, paper
-from tmm_sheets.drawing.title_block import block
+from tmm_sheets.drawing.paper import A1, SIDES, Paper, block, paper
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import pages
 from tmm_sheets.sheets.sheet import composed

@@ -12,7 +12,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import glyph, letter, plain
 from tmm_sheets.drawing.marks import Text
-from tmm_sheets.drawing.title_block import block, draw_frame
+from tmm_sheets.drawing.paper import block, draw_frame
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import variant
 

@@ -17,8 +17,8 @@ from typing import Any
 import click
 
 from tmm_sheets import catalogue, files, kept, resources, words
+from tmm_sheets.kept import fingerprint, maker
 from tmm_sheets.output.build_store import Folder
-from tmm_sheets.program import fingerprint, maker
 from tmm_sheets.task import families, title_entries
 
 ELSEWHERE = frozenset({"measured", "image", "dxf", "group", "marks", "printer", "preview", "archive", "with_note", "views",

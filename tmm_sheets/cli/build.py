@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tmm_sheets import catalogue, encodings, files, quoting, words
-from tmm_sheets.cli import again
+from tmm_sheets.cli import again, argument, option
 from tmm_sheets.cli.options import (
     CORRECTED,
     DASK,
@@ -39,10 +39,9 @@ from tmm_sheets.cli.options import (
 )
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
 from tmm_sheets.files import MOST_POSITIONS
-from tmm_sheets.localized_cli import argument, option
 from tmm_sheets.output import build_store
 from tmm_sheets.output.building import Order, build
-from tmm_sheets.progress import Bar, Progress, Stopwatch
+from tmm_sheets.terminal import Bar, Progress, Stopwatch
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:

@@ -9,6 +9,7 @@ import click
 
 from tmm_sheets import files
 from tmm_sheets.box import Box
+from tmm_sheets.cli import argument, option
 from tmm_sheets.cli.options import (
     CORRECTED,
     NO_CACHE,
@@ -26,8 +27,7 @@ from tmm_sheets.cli.options import (
     titled,
 )
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.localized_cli import argument, option
-from tmm_sheets.progress import Progress
+from tmm_sheets.terminal import Progress
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tmm_sheets import files, kept, words
-from tmm_sheets.localized_cli import argument, option
+from tmm_sheets.cli import argument, option
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from tmm_sheets import catalogue, files, quoting, words
+from tmm_sheets.cli import argument, option
 from tmm_sheets.cli.options import (
     CORRECTED,
     NO_CACHE,
@@ -26,8 +27,7 @@ from tmm_sheets.cli.options import (
 )
 from tmm_sheets.errors import CannotBuild, together
 from tmm_sheets.files import MOST_POSITIONS
-from tmm_sheets.localized_cli import argument, option
-from tmm_sheets.progress import Progress
+from tmm_sheets.terminal import Progress
 from tmm_sheets.words import marked, tell
 
 # --- a project ---------------------------------------------------------------------------------------------------------------

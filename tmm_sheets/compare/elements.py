@@ -28,8 +28,8 @@ from tmm_sheets.drawing import ink
 from tmm_sheets.drawing.canvas import MarkGroup
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Provenance, Role, Text, View, run
+from tmm_sheets.drawing.paper import who_cells
 from tmm_sheets.drawing.text_layout import text_box
-from tmm_sheets.drawing.title_block import who_cells
 from tmm_sheets.errors import BadInput
 from tmm_sheets.sheets.composed import Composed
 from tmm_sheets.sheets.sheet import ask_again, composed

@@ -25,10 +25,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets import catalogue, files, kept, quoting, spelling, words
 from tmm_sheets.errors import BadInput, CannotBuild, Stopped
+from tmm_sheets.kept import fingerprint, program
 from tmm_sheets.output import with_room
 from tmm_sheets.output.build_store import current, outlet, put, record_of
 from tmm_sheets.output.building import Order, build
-from tmm_sheets.program import fingerprint, program
 from tmm_sheets.task import title_entries
 from tmm_sheets.words import tell
 

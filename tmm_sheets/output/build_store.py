@@ -23,7 +23,7 @@ from typing import Any
 from tmm_sheets import files, kept
 from tmm_sheets.errors import BadInput, Problem, reason_of
 from tmm_sheets.files import URL
-from tmm_sheets.program import fingerprint
+from tmm_sheets.kept import fingerprint
 from tmm_sheets.quoting import install
 from tmm_sheets.words import tell
 

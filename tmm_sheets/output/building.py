@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets import files, kept, words
 from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.kept import fingerprint, program
 from tmm_sheets.output.build_store import (
     BuildRecord,
     Outlet,
@@ -21,9 +22,8 @@ from tmm_sheets.output.build_store import (
     outlet,
     record_of,
 )
-from tmm_sheets.program import fingerprint, program
-from tmm_sheets.progress import Stopwatch
 from tmm_sheets.task.title_entries import Names
+from tmm_sheets.terminal import Stopwatch
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:

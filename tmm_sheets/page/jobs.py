@@ -11,13 +11,13 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tmm_sheets import catalogue, files, kept, progress, words
+from tmm_sheets import catalogue, files, kept, terminal, words
 from tmm_sheets.compare.findings import Report
 from tmm_sheets.compare.group import DRAWINGS, NUMBERS, PICTURES
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.kept import fingerprint, maker
 from tmm_sheets.output import with_room
 from tmm_sheets.page.workers import Message, Say, told
-from tmm_sheets.program import fingerprint, maker
 from tmm_sheets.project import Project
 from tmm_sheets.words import tell
 
@@ -205,7 +205,7 @@ def _commanded(command: Sequence[str], say: Say) -> tuple[int, list[str]]:
     run = import_module("tmm_sheets.__main__").run  # as a shell calls it: the command line knows the page
     language = [f"--lang={words.asked()}"] if words.asked() else []
     told = io.StringIO()
-    with redirect_stdout(io.StringIO()), redirect_stderr(told), progress.heard(lambda what: say(say=what)):
+    with redirect_stdout(io.StringIO()), redirect_stderr(told), terminal.heard(lambda what: say(say=what)):
         status = run([*command, *language])
     return status, told.getvalue().splitlines()
 

@@ -7,7 +7,7 @@ from contextlib import suppress
 from importlib import import_module
 from pkgutil import walk_packages
 
-from tmm_sheets import catalogue, kept, program, words
+from tmm_sheets import catalogue, kept, words
 from tmm_sheets.backends import dxf, pdf, svg
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
@@ -25,7 +25,7 @@ def _load() -> None:
             if module.name != __name__:
                 with suppress(ImportError):
                     import_module(module.name)
-    program.maker()
+    kept.maker()
     with kept.unused():
         drawn = sheet.every(Project(catalogue.read("lugansk/shaper"))).drawn
     for backend in (dxf, pdf, svg):

@@ -32,7 +32,7 @@ from tmm_sheets.drawing.marks import (
     View,
 )
 from tmm_sheets.drawing.text_layout import Crowded, Shortened
-from tmm_sheets.program import fingerprint, maker
+from tmm_sheets.kept import fingerprint, maker
 from tmm_sheets.sheets.views import ViewPlace
 from tmm_sheets.words import CatalogueText, Remark, marked, tell
 

@@ -19,10 +19,9 @@ from tmm_sheets.drawing.ink import polyline_inside
 from tmm_sheets.drawing.ink_index import dense
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Mark, Polyline, Text, View, flat
-from tmm_sheets.drawing.paper import A1
+from tmm_sheets.drawing.paper import A1, block, draw_frame
 from tmm_sheets.drawing.placing import place
 from tmm_sheets.drawing.text_layout import Shortened, bounds_of, text_box, text_boxes
-from tmm_sheets.drawing.title_block import block, draw_frame
 from tmm_sheets.sheets import composition
 from tmm_sheets.sheets.composed import Composed, Leaving
 from tmm_sheets.sheets.views import VIEWS, Arrangement, arrangement, function

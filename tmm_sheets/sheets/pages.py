@@ -19,9 +19,8 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.ink_index import dense
 from tmm_sheets.drawing.marks import Dimension, Drawing, Line, Mark, Text, View, flat, moved
-from tmm_sheets.drawing.paper import MAIN, Paper, paper
+from tmm_sheets.drawing.paper import MAIN, Paper, block, draw_frame, paper
 from tmm_sheets.drawing.text_layout import text_box
-from tmm_sheets.drawing.title_block import block, draw_frame
 from tmm_sheets.sheets.composing import FRAME, entries, said
 from tmm_sheets.words import tell
 

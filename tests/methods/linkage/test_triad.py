@@ -15,10 +15,9 @@ from tests.methods.linkage.mechanisms import mechanism
 from tests.project_files import known
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.lab.stress.draw import chain
-from tmm_sheets.mechanism.groups import TRIAD, three_legs
+from tmm_sheets.mechanism.groups import TRIAD, decompose, three_legs
 from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Crank, Leg
-from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.methods.linkage.checks import check_turn
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.task import variant

@@ -16,7 +16,7 @@ from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_layout import needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.mechanism.structure import decompose
+from tmm_sheets.mechanism.groups import decompose
 from tmm_sheets.numbers import Sizes, decimals_for, fixed, is_zero, number, written
 from tmm_sheets.sheets.border_solver import BorderNode, table_node
 from tmm_sheets.sheets.components import graphs, listed
