@@ -19,7 +19,7 @@ from tmm_sheets import __main__, catalogue, cli, resources
 from tmm_sheets.backends import dxf_frame
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
-from tmm_sheets.task import keys, schema, variant
+from tmm_sheets.task import keys, schema, seldom_tables, variant
 
 ROOT = docs.ROOT
 TEXTS = {p.relative_to(ROOT).as_posix(): p.read_text(encoding="utf-8") for p in docs.PAPERS}
@@ -405,8 +405,8 @@ def test_every_table_of_the_project_file_is_told():
 
 
 def tables():
-    named = [m for m in vars(schema).values() if isinstance(m, type) and issubclass(m, schema.Table) and m is not schema.Table]
-    return [*named, variant.Variant]
+    every = [m for room in (schema, seldom_tables) for m in vars(room).values()]
+    return [*(m for m in every if isinstance(m, type) and issubclass(m, schema.Table) and m is not schema.Table), variant.Variant]
 
 
 def test_every_key_has_a_value_and_a_meaning():

@@ -22,9 +22,9 @@ RULES = {
     "construction": ("", ""),
     "drawing": ("", ""),
     "methods": ("construction", ""),
-    "methods.linkage": ("construction mechanism methods.integration", "methods.flywheel task.schema"),
+    "methods.linkage": ("construction mechanism methods.integration", "methods.flywheel task.seldom_tables"),
     "methods.flywheel": ("construction mechanism methods.integration methods.linkage", "task.schema"),
-    "methods.gears": ("construction", "task.schema"),
+    "methods.gears": ("construction", "task.schema task.seldom_tables"),
     "methods.cams": ("construction methods.integration", "task.schema"),
     "task": ("task.letters", ""),
     "task.assembly": ("construction mechanism methods.linkage task", ""),
@@ -81,7 +81,7 @@ LIBRARIES = {
     "ezdxf": "backends.dxf backends.dxf_frame_making compare.cad.cad_file compare.overlays",
     "reportlab": "backends.pdf compare.report_pages",
     "matplotlib": "backends.png lab.bench.records optimising.optimum",
-    "pydantic": "api task.values task.schema task.messages task.variant task.title_entries task.keys "
+    "pydantic": "api task.values task.schema task.seldom_tables task.messages task.variant task.title_entries task.keys "
                 "task.family_folder task.family_tables compare.group compare.placing",
     "pydantic_core": "task.messages task.keys task.schema task.values result_files",
     "cv2": "compare.photo", "pypdfium2": "compare.photo",

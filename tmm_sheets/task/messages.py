@@ -12,7 +12,7 @@ from pydantic_core import ErrorDetails
 
 from tmm_sheets import toml_file
 from tmm_sheets.errors import BadInput
-from tmm_sheets.task.schema import PaperTable, Table, TitleBlockTable
+from tmm_sheets.task.schema import PaperTable, Seldom, Table, TitleBlockTable
 from tmm_sheets.task.units import Refused, shown
 from tmm_sheets.task.values import meant
 from tmm_sheets.toml_lines import KeyPath, TomlLines
@@ -92,8 +92,8 @@ def _quoted(value: Any) -> str:
 
 def table_of(annotation: Any) -> type[Table] | None:
     """The table an annotation is about: ``Crank | None``, ``tuple[Guide, ...]``."""
-    if isinstance(annotation, type) and issubclass(annotation, Table):
-        return annotation
+    if isinstance(annotation, type) and issubclass(annotation, Table | Seldom):
+        return annotation.table() if issubclass(annotation, Seldom) else annotation
     if get_origin(annotation) in (UnionType, tuple):
         return next(filter(None, map(table_of, get_args(annotation))), None)
     return None

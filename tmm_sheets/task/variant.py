@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field, PrivateAttr, ValidationError
 
@@ -29,27 +29,29 @@ from tmm_sheets.task.schema import (
     FlywheelTable,
     ForcesTable,
     ForceTable,
-    FrictionTable,
     GearTable,
     GroupTable,
     GuideTable,
     HeadingTable,
-    InputTable,
     LinkTable,
     MomentTable,
     NoteTable,
     PaperTable,
     PointTable,
-    ReducerTable,
-    SynthesisTable,
+    Seldom,
     Table,
     TitleBlockTable,
-    TrainTable,
 )
 from tmm_sheets.task.values import Coordinate, Name, PositiveNumber, PrintedNumber
 from tmm_sheets.toml_file import BareValue, quoted
 from tmm_sheets.toml_lines import KeyPath, TomlLines
 from tmm_sheets.words import either, marked, tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.task.seldom_tables import FrictionTable, InputTable, ReducerTable, SynthesisTable, TrainTable
+else:
+    FrictionTable, InputTable, ReducerTable, SynthesisTable, TrainTable = (
+        type(name, (Seldom,), {}) for name in ("FrictionTable", "InputTable", "ReducerTable", "SynthesisTable", "TrainTable"))
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.task.schema import ReducerTable
+    from tmm_sheets.task.seldom_tables import ReducerTable
 
 
 Driver = Literal["sun", "ring", "carrier"]

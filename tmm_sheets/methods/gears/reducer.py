@@ -34,7 +34,7 @@ from tmm_sheets.numbers import number
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.task.schema import ReducerTable
+    from tmm_sheets.task.seldom_tables import ReducerTable
 
 
 SOURCE = "003, 2.1–2.4"

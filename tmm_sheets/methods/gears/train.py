@@ -34,7 +34,7 @@ from tmm_sheets.numbers import number
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.task.schema import TrainTable
+    from tmm_sheets.task.seldom_tables import TrainTable
 
 FARTHEST = 2.0
 """Teeth by which the sums of tooth numbers of one stage may differ: so much can shifts bridge."""

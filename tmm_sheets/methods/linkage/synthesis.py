@@ -24,7 +24,7 @@ from tmm_sheets.numbers import number
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.task.schema import SynthesisTable
+    from tmm_sheets.task.seldom_tables import SynthesisTable
 
 UNDER = Rule("direction under an angle", lambda u, angle: u * (np.cos(angle) - 1j * np.sin(angle)), ("direction", "angle"),
              "direction", marked("At the angle {1} to {0} draw the direction {name}."))
