@@ -18,7 +18,7 @@ from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.project import Project
 from tmm_sheets.result_files import frame_of
 from tmm_sheets.task import edited_text, title_entries, units, variant as variants
-from tmm_sheets.toml_lines import dotted
+from tmm_sheets.toml_file import dotted
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:

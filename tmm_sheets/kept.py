@@ -191,7 +191,7 @@ def source_fingerprints() -> tuple[str, str]:
     name = fingerprint("program", "\n".join((sys.version, *looked_at)))
     if known := taken(read(name), lambda tree: (str(tree[0]), str(tree[1]))):
         return known
-    own = fingerprint(__version__, *[part for entry in files for part in (entry.name, _content(entry.path))])
+    own = fingerprint(__version__, *[f"{entry.name}\n".encode() + _content(entry.path) for entry in files])
     # Installers write the version of a library into the name of a folder beside it.
     whole = fingerprint(own, sys.version, *(
         path.name for name, file in libraries.items() for path in sorted(Path(file).parents[1].glob(f"{name}-*"))))

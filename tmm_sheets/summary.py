@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import in_a_row, listed, of_reader
 from tmm_sheets.task import edited_text, title_entries, units
-from tmm_sheets.toml_lines import dotted, nodes
+from tmm_sheets.toml_file import dotted, nodes
 from tmm_sheets.words import of_file, tell, tell_n
 
 if TYPE_CHECKING:

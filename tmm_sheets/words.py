@@ -15,12 +15,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from tmm_sheets.resources import folder
-
-if TYPE_CHECKING:
-    from decimal import Decimal
 
 T = TypeVar("T")
 CODE = "en"
@@ -33,8 +30,7 @@ LOCALE = os.path.join(folder("templates"), "locale")
 
 def languages(place: str | os.PathLike[str]) -> tuple[str, ...]:
     """Languages of a folder of catalogues, the code's own last; a file that lies there too is none."""
-    with os.scandir(place) as entries:
-        found = {entry.name for entry in entries if entry.is_dir() and entry.name[:1].islower()}
+    found = {entry.name for entry in os.scandir(place) if entry.is_dir() and entry.name[:1].islower()}
     return (*sorted(found - {CODE}), CODE)
 
 
@@ -130,15 +126,14 @@ class CatalogueText(str):
             return super().format(*args, **fields)
         from decimal import Decimal
 
-        numbers = float, Decimal
-        signed = {key: _Signed(value, sign) if isinstance(value, numbers) else value for key, value in fields.items()}
-        return super().format(*[_Signed(value, sign) if isinstance(value, numbers) else value for value in args], **signed)
+        signed = {key: _Signed(value, sign) if isinstance(value, float | Decimal) else value for key, value in fields.items()}
+        return super().format(*[_Signed(value, sign) if isinstance(value, float | Decimal) else value for value in args], **signed)
 
 
 class _Signed:
     """A number that is written with the decimal sign of a language."""
 
-    def __init__(self, number: float | Decimal, sign: str) -> None:
+    def __init__(self, number: Any, sign: str) -> None:
         self.number, self.sign = number, sign
 
     def __format__(self, spec: str) -> str:

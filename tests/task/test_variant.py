@@ -14,7 +14,7 @@ from tests.project_files import FOUR_BAR, written
 from tmm_sheets import resources
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import variant
-from tmm_sheets.toml_lines import scan
+from tmm_sheets.toml_file import scan
 
 SHAPER = resources.variants() / "lugansk" / "shaper.toml"
 TEXT = SHAPER.read_text(encoding="utf-8")

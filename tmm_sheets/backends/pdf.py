@@ -34,6 +34,7 @@ SET_UP = f"{MM:.9f} 0 0 {MM:.9f} 0 0 cm 0 g 0 G 1 J 1 j"  # millimetres, black, 
 FONT = "TMMSheetsB"
 CREATOR = "tmm-sheets"
 CAP = 0.7  # height of a capital letter of the font, em
+ESCAPES = {code: f"\\{code:03o}" for code in (*range(32), *range(127, 256))} | {ord(sign): f"\\{sign}" for sign in "\\()"}
 BEZIER = pi / 4  # an arc is cut into cubic curves of at most this angle: 4e-6 of the radius off the circle
 
 
@@ -265,7 +266,7 @@ def _turned(angle: float) -> str:
 
 def _lettering(drawing: Drawing, page: Any) -> str:
     """Text operators of the runs of letters, in the order of the drawing."""
-    font, doc, escape = pdfmetrics.getFont(FONT), page._doc, page._escape
+    font, doc = pdfmetrics.getFont(FONT), page._doc
     out, now, wide, known = ["BT"], "", 1.0, {*map(chr, font.face.charToGlyph)}
     coded = dict[str, list[tuple[str, str]]]()  # by its text each run's subsets of the font with its codes there
     for mark in drawing.marks:
@@ -275,7 +276,7 @@ def _lettering(drawing: Drawing, page: Any) -> str:
             if not known.issuperset(mark.text):
                 missing = [c for c in mark.text if c not in known]
                 raise ValueError(f"the drawing font has no character '{missing[0]}' (U+{ord(missing[0]):04X}) in '{mark.text}'")
-            coded[mark.text] = [(font.getSubsetInternalName(subset, doc), escape(code))
+            coded[mark.text] = [(font.getSubsetInternalName(subset, doc), code.decode("latin-1").translate(ESCAPES))
                                 for subset, code in font.splitString(mark.text, doc)]
         place = f"{_turned(mark.angle)} {mark.at.real:.3f} {mark.at.imag:.3f} Tm"
         if "n" in place:

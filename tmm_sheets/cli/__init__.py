@@ -142,14 +142,6 @@ class Listed(Command):
         return ctx.invoke(self.function(), **ctx.params)
 
 
-class Group(Command, click.Group):
-    """Commands under one name."""
-
-    def __init__(self, *arguments: Any, **settings: Any) -> None:
-        super().__init__(*arguments, **settings)
-        self.params.append(_lang())
-
-
 def _lang() -> Option:
     return Option(["--lang"], type=click.Choice(LANGUAGES), expose_value=False, help=_LANG)
 
@@ -206,8 +198,12 @@ def _function(name: str) -> Any:
     return getattr(import_module(f"tmm_sheets.cli.{module}"), f"run_{name}")
 
 
-class Commands(Group):
+class Commands(Command, click.Group):
     """The commands, each of its module."""
+
+    def __init__(self, *arguments: Any, **settings: Any) -> None:
+        super().__init__(*arguments, **settings)
+        self.params.append(_lang())
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Their names."""

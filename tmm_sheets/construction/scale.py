@@ -143,14 +143,12 @@ def handy(least: float) -> float:
     """
     if not least > 0:
         raise ValueError(f"a scale factor must be positive, not {least}")
-    series = _series(least)
-    return series[bisect_left(series, least * (1 - 1e-9))]
+    return _series(least)[bisect_left(_series(least), least * (1 - 1e-9))]
 
 
 def _largest(most: float) -> float:
     """Largest number of the series that is not greater than ``most``."""
-    series = _series(most)
-    return series[bisect_right(series, most * (1 + 1e-9)) - 1]
+    return _series(most)[bisect_right(_series(most), most * (1 + 1e-9)) - 1]
 
 
 def _series(about: float) -> tuple[float, ...]:

@@ -59,7 +59,6 @@ class InkIndex:
         self.written, self._corners, self.texts = np.empty((0, 4)), np.empty((0, 4), complex), list[int]()
         self._filled, self._steps = np.empty((0, 4)), defaultdict[tuple[str | int, ...], list[int]](list)
         self._lines = dict[tuple[str | int, ...], dict[int, tuple[tuple[complex, complex], Role]]]()
-        self.surroundings = dict[Any, Any]()
         self.set_leaders(np.empty(0), np.empty(0))
         self.add(marks)
 
@@ -108,7 +107,7 @@ class InkIndex:
             self._filled = np.vstack((self._filled, filled))
         vars(self).pop("_outlines", None)
         self._lines.clear()
-        self.surroundings.clear()
+        self.surroundings, self.subjects = dict[Any, Any](), dict[Any, tuple[list[int], tuple[complex, complex] | None]]()
         for name, make in (("heavy", self._forbidden_cells), ("light", self._remaining_cells)):
             if name in vars(self):
                 vars(self)[name].include(make(*before))

@@ -544,7 +544,8 @@ def leader_to(label: Label, box: Box) -> tuple[complex, complex] | None:
     if not label.shelf:
         end = box.nearest(label.anchor)
         return (label.anchor, end) if abs(end - label.anchor) > NEAR + label.gap else None
-    end = min(_shelf_ends(box), key=lambda z: abs(z - label.anchor))
+    left, right = _shelf_ends(box)
+    end = right if abs(right - label.anchor) < abs(left - label.anchor) else left
     return label.anchor + label.shelf * (end - label.anchor) / abs(end - label.anchor), end
 
 

@@ -319,8 +319,9 @@ def _runs(text: str, height: float) -> Floats:
 
 
 def _subject(ink: InkIndex, label: Label) -> _Subject:
-    named = _named(ink, label)
-    return named, _vector(ink, label, named)
+    if label not in ink.subjects:
+        ink.subjects[label] = (named := _named(ink, label)), _vector(ink, label, named)
+    return ink.subjects[label]
 
 
 def _own_segments(ink: InkIndex, labels: Sequence[Label], subjects: Sequence[_Subject], which: Numbers, a: Points, b: Points,

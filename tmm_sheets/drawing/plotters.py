@@ -12,7 +12,7 @@ from tmm_sheets import spelling, toml_file
 from tmm_sheets.box import Box
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.resources import template
-from tmm_sheets.toml_lines import dotted
+from tmm_sheets.toml_file import dotted
 from tmm_sheets.words import tell
 
 DEFAULT = "a1"

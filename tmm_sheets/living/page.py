@@ -28,7 +28,7 @@ from tmm_sheets.record.recording import called
 from tmm_sheets.resources import template
 from tmm_sheets.task import edited_text, units
 from tmm_sheets.task.schema import Table
-from tmm_sheets.toml_lines import KeyPath, nodes, scan
+from tmm_sheets.toml_file import KeyPath, nodes, scan
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:

@@ -11,10 +11,10 @@ and scale factors come from it. What no place of the sheet can reach is told by 
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
-from itertools import pairwise
+from itertools import chain, pairwise
 from math import inf
 from operator import mul
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -105,7 +105,9 @@ class Need:
 
     def needed(self, width: float, height: float) -> float:
         """Scale factor with which the view fits a place of this size, not rounded."""
-        w, h = min(width - ROUNDED, self.most[0]), min(height - ROUNDED - self.covered, self.most[1])
+        w, h = width - ROUNDED, height - ROUNDED - self.covered
+        most_w, most_h = self.most
+        w, h = w if w < most_w else most_w, h if h < most_h else most_h
         if self.scale is not None:
             return self.scale(w, h)
         free_w, free_h = w - self.around[0], h - self.around[1]
@@ -161,20 +163,21 @@ class BorderNode:
     tried: dict[tuple[float, float], Any] = field(default_factory=dict)
     still: set[tuple[Any, ...]] = field(default_factory=set)
 
+    def __post_init__(self) -> None:
+        self.between = self.gap * (len(self.children) - 1)
+
     def again(self) -> BorderNode:
         """A copy for another tree: its borders move by themselves, what its places cost is known to both."""
         return replace(self, children=[child.again() for child in self.children], shares=[*self.shares],
                        tried={} if self.shares else self.tried, still=set())
 
-    def every(self) -> Iterator[BorderNode]:
+    def every(self) -> list[BorderNode]:
         """The node and all below it."""
-        yield self
-        for child in self.children:
-            yield from child.every()
+        return [self, *chain.from_iterable([child.every() for child in self.children])]
 
-    def leaves(self) -> Iterator[BorderNode]:
+    def leaves(self) -> list[BorderNode]:
         """The views in it."""
-        return (node for node in self.every() if node.need is not None)
+        return [node for node in self.every() if node.need is not None]
 
     def cost(self, width: float, height: float, most: float = inf) -> float:
         """What the places of its views cost: more, the less of what it is meant to have each of them fills.
@@ -189,7 +192,7 @@ class BorderNode:
             cost, lacks = self.priced(width, height)
             found = cost + lacks
         else:
-            found, free = 0.0, (height if self.axis else width) - self.gap * (len(self.children) - 1)
+            found, free = 0.0, (height if self.axis else width) - self.between
             for child, share in zip(self.children, self.shares, strict=True):
                 size = share * free
                 found += child.cost(width, size, most - found) if self.axis else child.cost(size, height, most - found)
@@ -218,8 +221,7 @@ class BorderNode:
         """
         if not self.shares or (width, height, steps) in self.still:
             return False
-        free = (height if self.axis else width) - self.gap * (len(self.children) - 1)
-        moved = False
+        free, moved = (height if self.axis else width) - self.between, False
         for i in range(len(self.children) - 1):
             moved |= self._move(i, [step / free for step in steps], width, height, free)
         for child, share in zip(self.children, self.shares, strict=True):
@@ -253,7 +255,7 @@ class BorderNode:
         if self.need is not None:
             return [Box(*[float(round(x)) for x in box])]
         found, at = list[Box](), box.y1 if self.axis else box.x0
-        free = (box.height if self.axis else box.width) - self.gap * (len(self.children) - 1)
+        free = (box.height if self.axis else box.width) - self.between
         for child, size in zip(self.children, [share * free for share in self.shares], strict=True):
             found += child.places(Box(box.x0, at - size, box.x1, at) if self.axis else Box(at, box.y0, at + size, box.y1))
             at += -(size + self.gap) if self.axis else size + self.gap
@@ -300,8 +302,9 @@ class FigureNode(BorderNode):
 
     def priced(self, width: float, height: float) -> tuple[float, float]:
         """What the figure costs with what is read with it, and what it lacks."""
-        found = self.tried.get((width, height)) or self._best(width, height, *self.children[0].priced(width, height))
-        return found[0], found[1]
+        cost, lacks, *_ = self.tried[width, height] if (width, height) in self.tried else self._best(
+            width, height, *self.children[0].priced(width, height))
+        return cost, lacks
 
     def places(self, box: Box) -> list[Box]:
         """Place of the figure, and of a text the whole width under it."""
@@ -336,7 +339,7 @@ class FigureNode(BorderNode):
 
 def solve(tree: BorderNode, box: Box) -> list[Box]:
     """Places of the views of a tree in a rectangle, in turn."""
-    nodes, found = list(tree.every()), list[tuple[float, list[list[float]]]]()
+    nodes, found = tree.every(), list[tuple[float, list[list[float]]]]()
     begin = [node.shares for node in nodes]
     for ladder in STEPS:
         _shared(nodes, begin)

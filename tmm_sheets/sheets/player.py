@@ -236,7 +236,7 @@ class PlayerStage:
         """
         if not points:
             return self.canvas.tracing(role, self.step(step).path, self.label, self.number, name)
-        on = [self.step(point) for point in points]
+        on = [point if isinstance(point, Step) else self.plan[point] for point in points]
         if points[1:] and role != "text":
             name = name or f"{on[0].name}–{on[-1].name}"
         paths = tuple([step.path for step in (on if along is None else [*on, along])])
@@ -248,7 +248,7 @@ class PlayerStage:
 
     def value(self, step: Step | str) -> Any:
         """Value of a step at the stage's position."""
-        found = self.step(step)
+        found = step if isinstance(step, Step) else self.plan[step]
         return found.value if self.k is None else found.at(self.k)
 
     def at(self, step: Step | str) -> complex:

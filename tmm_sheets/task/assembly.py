@@ -34,7 +34,7 @@ from tmm_sheets.methods.linkage.numbering import SENSES
 from tmm_sheets.task import synthesis_refs
 from tmm_sheets.task.schema import ForceTable, GroupTable, LinkTable, MomentTable
 from tmm_sheets.task.variant import Variant
-from tmm_sheets.toml_lines import dotted
+from tmm_sheets.toml_file import dotted
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:

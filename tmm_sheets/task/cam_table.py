@@ -12,7 +12,7 @@ from typing import Any
 
 from tmm_sheets.task import units
 from tmm_sheets.task.values import diagram, levelled
-from tmm_sheets.toml_lines import Found, wrong
+from tmm_sheets.toml_file import Found, wrong
 from tmm_sheets.words import marked, tell
 
 LAW = "displacements"

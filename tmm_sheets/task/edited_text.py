@@ -12,7 +12,7 @@ from typing import Any
 
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import units
-from tmm_sheets.toml_lines import DEEPEST, dotted, nodes
+from tmm_sheets.toml_file import DEEPEST, dotted, nodes
 from tmm_sheets.words import tell
 
 LONGEST = 100

@@ -9,7 +9,7 @@ from typing import Any
 
 from tmm_sheets.encodings import cleaned
 from tmm_sheets.task.units import Refused
-from tmm_sheets.toml_lines import Found, nodes
+from tmm_sheets.toml_file import Found, nodes
 from tmm_sheets.words import marked, tell
 
 _USUAL = re.compile(r"[ -~А-яЁё°–—№«»]*")

@@ -15,7 +15,7 @@ from tmm_sheets.errors import BadInput
 from tmm_sheets.task.schema import PaperTable, Seldom, Table, TitleBlockTable
 from tmm_sheets.task.units import Refused, shown
 from tmm_sheets.task.values import meant
-from tmm_sheets.toml_lines import KeyPath, TomlLines
+from tmm_sheets.toml_file import KeyPath, TomlLines
 from tmm_sheets.words import either, marked, tell
 
 T = TypeVar("T", bound=Table)

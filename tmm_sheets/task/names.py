@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from tmm_sheets import spelling
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.task.schema import CrankTable
-from tmm_sheets.toml_lines import Found, KeyPath, wrong
+from tmm_sheets.toml_file import Found, KeyPath, wrong
 from tmm_sheets.words import both, marked, tell, tell_n
 
 

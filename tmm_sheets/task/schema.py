@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from importlib import import_module
 from math import inf
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, cast, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, model_validator
 from pydantic_core import CoreSchema, core_schema
@@ -91,8 +91,7 @@ class Seldom:
     @classmethod
     def table(cls) -> type["Table"]:
         """The table itself."""
-        found: type[Table] = getattr(import_module("tmm_sheets.task.seldom_tables"), cls.__name__)
-        return found
+        return cast("type[Table]", getattr(import_module("tmm_sheets.task.seldom_tables"), cls.__name__))
 
     @classmethod
     def model_validate(cls, data: Any) -> "Table":

@@ -12,7 +12,7 @@ from functools import reduce
 from operator import getitem
 from typing import Any
 
-from tmm_sheets.toml_lines import Found, KeyPath, nodes
+from tmm_sheets.toml_file import Found, KeyPath, nodes
 from tmm_sheets.words import tell
 
 _WRITTEN = r"(?P<sign>-?)\s*(?:(?P<part>[0-9]+(?:[.,][0-9]+)?)\s*[*·]?\s*)?synthesis(?:\s+(?P<name>\S+))?"

@@ -43,8 +43,7 @@ from tmm_sheets.task.schema import (
     TitleBlockTable,
 )
 from tmm_sheets.task.values import Coordinate, Name, PositiveNumber, PrintedNumber
-from tmm_sheets.toml_file import BareValue, quoted
-from tmm_sheets.toml_lines import KeyPath, TomlLines
+from tmm_sheets.toml_file import BareValue, KeyPath, TomlLines, quoted
 from tmm_sheets.words import either, marked, tell
 
 if TYPE_CHECKING:

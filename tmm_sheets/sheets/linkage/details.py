@@ -134,7 +134,7 @@ def with_room(project: Project, view: ViewPlace, node: BorderNode) -> BorderNode
                 found.setdefault(n, []).append(place.sizes())
         project.expected[key] = found
     asked: dict[int, list[list[tuple[float, float]]]] = project.expected[key]
-    leaves = list(node.leaves())
+    leaves = node.leaves()
     for n, sizes in asked.items():
         node = _tree_with_room(node, leaves[n], _forms(sizes))
     return node

@@ -294,14 +294,14 @@ class RowChoice:
     def __init__(self, spans: Sequence[Box]) -> None:
         self._ways = dict[int, tuple[int, list[tuple[int, float]], float, int]]()
         """By plans in a row: the rows asked for, the greatest width of rows by their plans, all heights, the rows there are."""
+        widths, heights = [s.width for s in spans], [s.height for s in spans]
         for rows in range(1, len(spans) + 1):
             per_row = -(-len(spans) // rows)
             if per_row not in self._ways:
-                parted = [spans[i:i + per_row] for i in range(0, len(spans), per_row)]
-                wide = dict[int, float]()
-                for row in parted:
-                    wide[len(row)] = max(wide.get(len(row), 0.0), sum([s.width for s in row]))
-                self._ways[per_row] = rows, [*wide.items()], sum([max([s.height for s in row]) for row in parted]), len(parted)
+                begins, wide = range(0, len(spans), per_row), dict[int, float]()
+                for row in [widths[i:i + per_row] for i in begins]:
+                    wide[len(row)] = max(wide.get(len(row), 0.0), sum(row))
+                self._ways[per_row] = rows, [*wide.items()], sum([max(heights[i:i + per_row]) for i in begins]), len(begins)
 
     def most_room(self, width: float, height: float) -> tuple[float, int]:
         """Rows with which the plans come out largest, and the scale factor they need; infinite where lettering takes the place."""
@@ -323,6 +323,7 @@ def velocities_place(project: Project, view: ViewPlace) -> BorderNode:
         need = Need((spans[0].width, spans[0].height), (MARGIN, HEAD + TITLE), (80.0, 80.0), finest=finest)
         return leaf(view.box, need.ending(coarsest, LARGEST))
 
+    sizes = [(s.width, s.height) for s in spans]
     in_place = view.known.setdefault("velocities", cache(RowChoice(spans).most_room))
 
     def scale(width: float, height: float) -> float:
@@ -334,7 +335,7 @@ def velocities_place(project: Project, view: ViewPlace) -> BorderNode:
         if not 0 < mu < inf:
             return 1.0
         mu = rounded_up(max(mu, finest))
-        return sum([(s.width / mu + MARGIN) * (s.height / mu + HEAD) for s in spans]) + TITLE * width
+        return sum([(wide / mu + MARGIN) * (high / mu + HEAD) for wide, high in sizes]) + TITLE * width
 
     # All velocities are measured on them, and all that follows from these.
     need = Need(least=(120.0, 60.0), drawn=drawn, scale=scale)
