@@ -11,6 +11,7 @@ from tests.attack import DOORS, FAULTS, SHARES, entered
 from tests.few import few
 from tests.odd_projects import SMALL, SOURCES, case, fallen
 from tests.project_files import EVEN, FLYWHEEL, FORCE, GEAR, MASS, MOMENT, SLIDER, WORKING, from_file, project, read
+from tests.sheets.unlettered import unlettered, words
 from tmm_sheets import protocols, results
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.sheets.sheet import composed
@@ -77,12 +78,12 @@ def test_a_mechanism_of_any_size(factor):
     for a, b in zip(found["velocities"]["points"]["B"], real["velocities"]["points"]["B"], strict=True):
         assert a == pytest.approx([factor * x for x in b], rel=1e-12, abs=1e-12 * factor)
     assert found["velocities"]["omega"]["2"] == pytest.approx(real["velocities"]["omega"]["2"], rel=1e-12, abs=1e-12)
-    assert composed(other, 1).scales["positions"].mu == pytest.approx(factor * composed(plain, 1).scales["positions"].mu)
+    assert unlettered(other).scales["positions"].mu == pytest.approx(factor * unlettered(plain).scales["positions"].mu)
 
 
 def test_a_flywheel_too_large_for_any_scale():
     p = project(longer(from_file("lugansk/shaper"), 1e6))
-    composed(p, 1)
+    unlettered(p)
     with pytest.raises(CannotBuild, match=r"do not fit in 157 mm of the sheet at any scale of GOST 2\.302[^\n]*\n.*units you mean"):
         composed(p, 2)
 
@@ -95,8 +96,7 @@ def test_more_positions_than_a_sheet_can_show():
     with pytest.raises(CannotBuild, match=r"own\.toml:\d+: cycle\.positions: 720 positions .* 72 at most"):
         lines.extend(protocols.lines(p, None))
     assert any("(velocities), положение 2" in line for line in lines)
-    done = composed(project(SLIDER, EVEN, {"cycle.positions": 72}), 1)
-    assert {f"Положение {n}" for n in range(72)} <= {group.text for group in done.groups}
+    assert {f"Положение {n}" for n in range(72)} <= {*words(unlettered(project(SLIDER, EVEN, {"cycle.positions": 72})))}
 
 
 @pytest.mark.parametrize("method", ["wittenbauer", "mertsalov"])

@@ -8,6 +8,7 @@ import pytest
 
 from tests.few import few
 from tests.project_files import CAM, CRANK, FLYWHEEL, FORCE, GEAR, MASS, REDUCER, SLIDER, WORKING, project, write
+from tests.sheets.unlettered import unlettered
 from tmm_sheets import output
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput
@@ -77,7 +78,7 @@ def test_nothing_empty_and_nothing_crowded_on_its_sheet(name):
 
 def test_where_nothing_acts_there_is_no_force_plan():
     p = project(*PRESSED, IDLE)
-    titles = [part.title for part in composed(p, 1).parts]
+    titles = [part.title for part in unlettered(p).parts]
     assert "Группа Ассура 2–3 (2-й вид)" in titles
     assert not any(title.startswith("План сил") for title in titles)
     assert abs(p.study.forces.balancing.at(p.force_index)) == 0
@@ -118,7 +119,7 @@ def test_a_flywheel_without_what_it_needs_costs_nothing_else(tmp_path, capsys):
 ])  # fmt: skip
 def test_arrangements_named_in_the_file_leave_out_what_is_missing(asked, instead):
     p = project({"project.sheets": [asked]}, SLIDER if "gear" not in asked else GEAR)
-    titles = {part.title for part in composed(p, 1).parts}
+    titles = {part.title for part in unlettered(p).parts}
     assert any(instead in title for title in titles), titles
     assert not any("сил" in title or "едуктор" in title for title in titles)
 

@@ -231,7 +231,7 @@ def test_searches_are_counted(numbers):
     """Every step that is evaluated, or done again at other angles, is one of a drawn plan or of a search."""
     from tmm_sheets.construction import function
     from tmm_sheets.construction.step import Step
-    from tmm_sheets.sheets import sheet
+    from tmm_sheets.sheets import composing
 
     total, computed, repeated = 0, Step._computed, function.Replay.__call__
 
@@ -249,7 +249,8 @@ def test_searches_are_counted(numbers):
     with pytest.MonkeyPatch.context() as patch, kept.unused():
         patch.setattr(Step, "_computed", counted)
         patch.setattr(function.Replay, "__call__", again)
-        sheet.every(project, numbers=numbers)
+        for n in numbers:
+            composing.ask_again(project, n)
         drawn = sum(step.evaluated for of in project.plans.values() for plan in (of or {}).values()
                     for step in (*plan, *plan.auxiliaries.values(), *plan.conditions.values()))
     searched = sum(search.steps for search in project.searches)

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from tests import project_files as files
+from tests.sheets.unlettered import unlettered, words
 from tmm_sheets import catalogue, kept
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY, handy
-from tmm_sheets.drawing.marks import Arc, Text
+from tmm_sheets.drawing.marks import Arc
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import composition
 from tmm_sheets.sheets.border_solver import (
@@ -32,7 +33,6 @@ from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
 from tmm_sheets.sheets.linkage import diagrams, friction, kinematic_frames, kinetic_frames, link_marks
 from tmm_sheets.sheets.linkage.kinetics import OF_FORCE
 from tmm_sheets.sheets.player import once
-from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.sheets.views import arrangement
 from tmm_sheets.words import on_paper, paper
 
@@ -309,8 +309,8 @@ def test_a_view_left_out_gives_its_room_to_its_neighbours():
 def test_a_crank_that_swings_has_the_arc_it_goes_through():
     """No full circle stands on its sheets, and the room of one is not kept: the plans come out larger."""
     project = Project(catalogue.read("tests/projects/visor.toml"))
-    found = composed(project, 2)
-    way = [m for m in found.drawing.marks if isinstance(m, Arc) and m.by and m.by[:2] == ("construction", "positions/B")]
+    found = unlettered(project, 2)
+    way = [m for m in found.marks if isinstance(m, Arc) and m.by and m.by[:2] == ("construction", "positions/B")]
     assert len(way) == 1
     radius = 0.12 / found.scales["positions"].mu
     assert way[0].radius == pytest.approx(radius)
@@ -327,7 +327,7 @@ def test_a_traced_point_is_drawn_as_a_point_of_its_link():
     shape = next(s for s in link_marks.shapes(positions) if s.link == "2")
     assert set(shape.bar) == {"A", "B", "E"}
     assert link_marks.traced(project.mechanism, "2") == ["E"]
-    marks = composed(project, 1).drawing.marks
+    marks = unlettered(project).marks
     circles = {m.by.step for m in marks if isinstance(m, Arc) and m.style == "main" and m.by and m.by.role == "symbol"}
     assert "positions/B" in circles
     assert "positions/E" not in circles
@@ -336,9 +336,9 @@ def test_a_traced_point_is_drawn_as_a_point_of_its_link():
 def test_a_fixed_point_that_carries_nothing_is_no_part_of_the_mechanism():
     """It has no letter and takes no room: the plans are as large as without it."""
     far = {"points": {"O": ["0 m", "0 m"], "C": ["0.42 m", "0.05 m"], "P": ["3 m", "-2 m"]}}
-    one, other = (composed(files.project(files.FOUR_BAR, *more, files.EVEN), 1) for more in ([], [far]))
+    one, other = (unlettered(files.project(files.FOUR_BAR, *more, files.EVEN)) for more in ([], [far]))
     assert one.scales["positions"].mu == other.scales["positions"].mu
-    assert "P" not in {m.text for m in other.drawing.marks if isinstance(m, Text)}
+    assert "P" not in words(other)
 
 
 def test_letters_that_take_the_place_ask_for_more_of_it():

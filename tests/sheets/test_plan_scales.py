@@ -9,20 +9,18 @@ import pytest
 
 from tests import project_files as files
 from tests.few import seldom
+from tests.sheets.unlettered import unlettered, words
 from tmm_sheets import catalogue, output
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import composition, sheet
+from tmm_sheets.sheets import composition
 from tmm_sheets.sheets.linkage.kinematic_frames import own_factors
 from tmm_sheets.sheets.player import joined, needed
+from tmm_sheets.sheets.sheet import composed
 
 HERE = Path(__file__).parent
 CLOSE, CONVEYOR, PLANER = map(str, (HERE / "close.toml", *(HERE.parent / "projects" / f"{name}.toml" for name in
                                                           ("conveyor", "planer"))))
-
-
-def lettering(composed):
-    return [g.text for g in composed.groups if g.kind == "lettering"]
 
 
 # --- next to a dead point ---------------------------------------------------------------------------------------------
@@ -39,20 +37,20 @@ def plan_sizes(phi):
 
 
 @pytest.fixture(scope="module")
-def composed():
-    return sheet.composed(files.project(files.from_file(CLOSE)), 1)
+def drawn():
+    return unlettered(files.project(files.from_file(CLOSE)))
 
 
-def test_every_plan_can_be_lettered_with_a_factor_of_its_own_if_need_be(composed):
+def test_every_plan_can_be_lettered_with_a_factor_of_its_own_if_need_be(drawn):
     """The one next to the dead point is 400 times as large as usual: with one factor the others would be dots."""
     sizes = plan_sizes(np.radians(np.arange(0, 360, 30)))
     assert sizes[0] / np.median(sizes) > 400
-    frames = [frame for frame in reversed(composed.frames) if frame.plan == "velocities" and not frame.turn]
-    drawn = {int(frame.position): frame.mu[0] for frame in frames}
-    assert sorted(drawn) == [*range(12)]
-    assert all(25 <= sizes[i] / mu <= 100 for i, mu in drawn.items())
-    assert {drawn[i] for i in range(1, 12)} == {composed.scales["velocities"].mu}
-    assert str(composed.scales["velocities-2"]) in lettering(composed)
+    frames = [frame for frame in reversed(drawn.frames) if frame.plan == "velocities" and not frame.turn]
+    factors = {int(frame.position): frame.mu[0] for frame in frames}
+    assert sorted(factors) == [*range(12)]
+    assert all(25 <= sizes[i] / mu <= 100 for i, mu in factors.items())
+    assert {factors[i] for i in range(1, 12)} == {drawn.scales["velocities"].mu}
+    assert str(drawn.scales["velocities-2"]) in words(drawn)
 
 
 def test_sizes_of_one_kind_have_one_factor():
@@ -80,12 +78,12 @@ def every_sheet(project):
 
 def test_the_plans_of_the_dead_point_itself_say_what_is_too_short():
     """At the dead point the centrifugal acceleration of D, omega3^2 l, is 1e4 times that of the pin: omega3 = omega r / 0.5 mm."""
-    found = sheet.composed(files.project(files.from_file(CLOSE), {"cycle.force_position": "0"}), 1)
+    found = composed(files.project(files.from_file(CLOSE), {"cycle.force_position": "0"}), 1)
     mu = found.scales["accelerations"].mu
     pin, centre = (2 * np.pi) ** 2 * 0.1, (2 * np.pi * 0.1 / 0.0005) ** 2 * 0.3
     assert centre / mu > 50
     assert pin / mu < 1e-2
-    notes = " ".join(t for t in lettering(found) if "a̅" in t or "Меньше" in t)
+    notes = " ".join(g.text for g in found.groups if "a̅" in g.text or "Меньше" in g.text)
     assert "Меньше 1 мм, ≈ 0: a̅_B" in notes
     drawn = [g for p, q in pairwise(found.parts) if p.title.startswith("План ускорений (положение 0)")
              for g in found.groups if p.first <= g.first < q.first and g.kind == "arrow"]
@@ -113,16 +111,16 @@ def test_points_that_share_a_dot():
 def test_forty_plans_are_as_large_as_their_lettering_allows():
     """With 36 working positions the letters of all plans take more than the place: every second plan is drawn, and it is said."""
     project = files.project(files.from_file(CONVEYOR), {"cycle.working": 36})
-    found = sheet.composed(project, 1)
+    found = unlettered(project)
     parts = [p for p in found.parts if p.title.startswith("План скоростей")]
     assert [p.title.split()[-1] for p in parts] == [str(i) for i in range(40) if i % 2 == 0 or i == 3]
     assert max(project.study.velocities.points["D"].value.__abs__()) / found.scales["velocities"].mu > 10
-    assert "Начерчены планы скоростей" in " ".join(lettering(found))
+    assert "Начерчены планы скоростей" in " ".join(words(found))
     (said,) = map(str, composition.left_out(project, every_sheet(project)))
     assert said == "there is no room for 40 velocity plans: one in 2 is drawn"
     view = next(p.box for p in found.parts if p.draw == "kinematics.velocity_plans")
     for p, q in pairwise([*parts, next(p for p in found.parts if p.first > parts[-1].first)]):
-        ends = [z for m in found.drawing.marks[p.first:q.first] if hasattr(m, "a") for z in (m.a, m.b)]
+        ends = [z for m in found.marks[p.first:q.first] if hasattr(m, "a") for z in (m.a, m.b)]
         assert all(p.box.x0 <= z.real <= p.box.x1 for z in ends)
         assert all(view.y0 <= z.imag <= view.y1 for z in ends)
 
@@ -136,7 +134,7 @@ def with_scale(name, **factors):
 
 
 def test_a_factor_that_fits_is_taken():
-    found = sheet.composed(with_scale("sixbar/8:3", positions=0.0075), 1)
+    found = unlettered(with_scale("sixbar/8:3", positions=0.0075))
     assert found.scales["positions"].mu == 0.0075
 
 
@@ -148,22 +146,22 @@ def test_a_factor_that_fits_is_taken():
 def test_the_refusal_names_the_true_need(plan, name):
     """What it says it needs fits, a hundredth less does not."""
     with pytest.raises(CannotBuild, match="it needs") as refused:
-        sheet.composed(with_scale(name, **{plan: 1e-9}), 1)
+        unlettered(with_scale(name, **{plan: 1e-9}))
     need = float(re.search(r"it needs (\S+) or more", str(refused.value))[1])
-    assert sheet.composed(with_scale(name, **{plan: need}), 1).scales[plan].mu == need
+    assert unlettered(with_scale(name, **{plan: need})).scales[plan].mu == need
     with pytest.raises(CannotBuild, match="it needs"):
-        sheet.composed(with_scale(name, **{plan: 0.99 * need}), 1)
+        unlettered(with_scale(name, **{plan: 0.99 * need}))
 
 
 def test_the_ink_fills_the_place_at_the_need():
     """At the need of 8:3's positions the drawing reaches from side to side of its place, and not beyond."""
     with pytest.raises(CannotBuild) as refused:
-        sheet.composed(with_scale("sixbar/8:3", positions=1e-9), 1)
+        unlettered(with_scale("sixbar/8:3", positions=1e-9))
     need = float(re.search(r"it needs (\S+) or more", str(refused.value))[1])
-    found = sheet.composed(with_scale("sixbar/8:3", positions=need), 1)
+    found = unlettered(with_scale("sixbar/8:3", positions=need))
     k = next(k for k, p in enumerate(found.parts) if p.draw == "kinematics.position_plans")
     last = next(p.first for p in found.parts[k + 1:] if p.draw != "kinematics.position_plans")
-    x = [z.real for m in found.drawing.marks[found.parts[k].first:last] if type(m).__name__ == "Line" for z in (m.a, m.b)]
+    x = [z.real for m in found.marks[found.parts[k].first:last] if type(m).__name__ == "Line" for z in (m.a, m.b)]
     place = found.parts[k].box
     assert place.x0 <= min(x) <= max(x) <= place.x1
     assert max(x) - min(x) > 0.9 * place.width
@@ -182,7 +180,7 @@ def test_no_rounding_noise_on_the_sheets(name, label):
         v = v.model_copy(update={"cycle": v.cycle.model_copy(update={"force_position": label})})
     project = Project(v)
     for n in (1, 2):
-        for text in lettering(sheet.composed(project, n)):
+        for text in words(unlettered(project, n)):
             assert not re.search(r"0,0{7}|10\^\{−\d\d\}|(?<!φ)−0(?![\d,])|−0,0+(?!\d)", text), text
 
 

@@ -6,10 +6,10 @@ import pytest
 
 from tests.few import few
 from tests.project_files import project
+from tests.sheets.unlettered import unlettered
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.drawing.text_layout import text_box
 from tmm_sheets.sheets.components import clear_dimensions as cam_scale
-from tmm_sheets.sheets.sheet import composed
 
 LAW = {"law": "sine", "rise": "100 deg", "upper_dwell": "30 deg", "fall": "80 deg"}
 TAPPET = LAW | {"follower": "translating roller", "stroke": "30 mm", "pressure_angle": "30 deg"}
@@ -28,10 +28,9 @@ def test_coincident_marks_are_one_with_their_numbers_in_order():
 @pytest.mark.parametrize("name", few(CAMS, *list(CAMS)[::2]))
 def test_numbers_stand_in_their_order(name):
     own = project({"cam": CAMS[name]})
-    sheet = composed(own, 1)
     inversion = own.cam.inversion
-    found = [m for m in sheet.drawing.marks if isinstance(m, Text) and m.by is not None and m.by.role == "text" and m.height == 2.5
-             and m.by.step.startswith("cam-profile/")]
+    found = [m for m in unlettered(own).marks if isinstance(m, Text) and m.by is not None and m.by.role == "text"
+             and m.height == 2.5 and m.by.step.startswith("cam-profile/")]
     numbers = [n for m in found for n in m.text.split(", ")]
     assert sorted(numbers) == sorted(inversion.plan.labels)
     if own.cam.kind != "rocker":

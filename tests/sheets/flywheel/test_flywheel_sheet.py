@@ -13,6 +13,7 @@ import pytest
 
 from tests import project_files
 from tests.methods.linkage.shaper_truth import Shaper
+from tests.sheets.unlettered import unlettered, words
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
@@ -200,15 +201,15 @@ def test_a_place_that_is_too_small_is_refused(name):
 def test_the_graph_of_excess_energy_is_never_a_line():
     """Where the links' inertia decides (the screen's dE is 0.5 J beside 88 J), its own scale factor is printed."""
     screen = Project(variant.read(Path(__file__).parents[3] / "variants" / "screen.toml"))
-    sheet = composed(screen, 3)
+    marks = unlettered(screen, 3).marks
     fw, path = screen.flywheel, screen.flywheel.total_plan["points"].path
-    curve = [m for m in sheet.drawing.marks if m.by and m.by.role == "curve" and m.by.step == path]
+    curve = [m for m in marks if m.by and m.by.role == "curve" and m.by.step == path]
     height = max(float(np.ptp(flat(m).imag)) for m in curve)
     assert height > 60 > np.ptp(fw.energy_curve(fw.samples))
     at_positions = 125 * (fw.delta_E.max() - fw.delta_E.min())  # mm at 0.008 J/mm; the curve between rises a little above them
     assert at_positions <= height < 1.15 * at_positions
-    assert any(isinstance(m, Text) and "0,008 Дж/мм" in m.text for m in sheet.drawing.marks)
-    texts = [m for m in sheet.drawing.marks if isinstance(m, Text) and not m.text.endswith("увеличено")]
+    assert any(isinstance(m, Text) and "0,008 Дж/мм" in m.text for m in marks)
+    texts = [m for m in marks if isinstance(m, Text) and not m.text.endswith("увеличено")]
     # What its ordinates are against those of the other graph is said right under either title.
     for title, said in (("График суммарной работы", "Ординаты ΔE увеличены"), ("Диаграмма энергомасс", "уменьшены в 75 раз")):
         (above,), (beneath,) = ([m.at for m in texts if words in m.text] for words in (title, said))
@@ -226,8 +227,8 @@ def test_the_first_view_says_that_the_sheet_is_of_another_method():
                                             ("tests/projects/planer.toml", False),  # a moment alone: it has the graph
                                             ("tests/projects/feeder.toml", False)])  # a force alone
 def test_moments_beside_the_graph_of_forces_are_told(name, said):
-    words = " ".join(m.text for m in composed(Project(read(name)), 2).drawing.marks if isinstance(m, Text))
-    assert ("учтено также" in words) is said
+    said_there = " ".join(words(unlettered(Project(read(name)), 2)))
+    assert ("учтено также" in said_there) is said
 
 
 @pytest.mark.parametrize("table", [[[0, "4000 N"], [0.1, "0 N"], [1, "0 N"]], [[0, "0 N"], [0.95, "0 N"], [1, "4000 N"]]])
@@ -270,7 +271,7 @@ def test_a_fast_wheel_is_no_cast_iron(density, iron):
         project_files.FLYWHEEL, {"crank.speed": "9000 rpm", "flywheel.form": "disc",
                                  "flywheel.density": density, "project.sheets": ["flywheel"]}))
     assert own.flywheel.wheel.speed > 30
-    lettering = [m.text for m in composed(own, 1).drawing.marks if isinstance(m, Text)]
+    lettering = words(unlettered(own))
     assert any("чугуна" in text for text in lettering) == iron
     assert any("маховик стальной" in text for text in lettering) != iron
 
@@ -281,7 +282,7 @@ def test_nothing_is_no_share_of_a_work_that_is_nothing():
         project_files.SLIDER, project_files.WORKING, project_files.MASS, project_files.MOMENT, project_files.FLYWHEEL,
         {"project.sheets": ["flywheel"], "flywheel.form": "rim",
          "force": [{"name": "F3", "link": "3", "point": "B", "direction": "180 deg", "value": "500 N"}]}))
-    lettering = " ".join(m.text for m in composed(own, 1).drawing.marks if isinstance(m, Text))
+    lettering = " ".join(words(unlettered(own)))
     assert "%)" not in lettering.partition("по ординатам")[2].partition("График")[0]
     assert "по площади графика 0 Дж" in lettering or "по ординатам" not in lettering
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests import project_files as files
+from tests.sheets.unlettered import unlettered, words
 from tmm_sheets.drawing.marks import Line, Polyline
 from tmm_sheets.sheets.sheet import composed
 
@@ -13,13 +14,13 @@ STROKE = files.merged(files.HEAD, files.SLIDER, files.WORKING, files.FORCE, file
 
 def graph(project):
     """Its curve, the frame it lies in, ordinates and projection lines, lettering of the sheet, scale factor of the plans."""
-    found = composed(project, 1)
-    mine = [m for m in found.drawing.marks if m.by and m.by.step and m.by.step.startswith("loads/")]
+    found = unlettered(project)
+    mine = [m for m in found.marks if m.by and m.by.step and m.by.step.startswith("loads/")]
     curve = next(m for m in mine if isinstance(m, Polyline))
     thin = [m for m in mine if isinstance(m, Line) and m.style == "thin"]
-    carried = [m for m in found.drawing.marks if isinstance(m, Line) and m.by and m.by.role == "construction"
+    carried = [m for m in found.marks if isinstance(m, Line) and m.by and m.by.role == "construction"
                and abs(m.a.real - m.b.real) < 1e-9 and m.by.step == "positions/B"]
-    return curve, found.frames[curve.by.frame], thin, carried, [g.text for g in found.groups], found.scales["positions"].mu
+    return curve, found.frames[curve.by.frame], thin, carried, words(found), found.scales["positions"].mu
 
 
 @pytest.mark.parametrize(("crank", "times"), [("0.1 m", 1), ("0.008 m", 4)])
@@ -39,8 +40,8 @@ def test_a_short_stroke_has_an_abscissa_that_can_be_read(crank, times):
 
 def curves(project):
     """Curves of the force over the path: distances along it, m, and ordinates, N; numbers of the graph."""
-    found = composed(project, 1)
-    mine = [m for m in found.drawing.marks if m.by and m.by.step and m.by.step.startswith("loads/")]
+    found = unlettered(project)
+    mine = [m for m in found.marks if m.by and m.by.step and m.by.step.startswith("loads/")]
     read = []
     for curve in (m for m in mine if isinstance(m, Polyline)):
         frame = found.frames[curve.by.frame]
@@ -75,9 +76,8 @@ def test_each_diagram_of_a_force_over_the_path_is_drawn():
     assert first[1].max() == pytest.approx(1500, rel=1e-3)
     assert second[1].max() == pytest.approx(900)
     assert second[1].min() == 0
-    texts = [g.text for g in composed(project, 1).groups]
     labels = project.cycle.labels
-    assert {f"{labels[1]}…{labels[5]}", f"{labels[13]}…{labels[17]}"} <= set(texts)
+    assert {f"{labels[1]}…{labels[5]}", f"{labels[13]}…{labels[17]}"} <= {*words(unlettered(project))}
 
 
 def test_every_position_of_the_graph_has_its_number_beside_lines():
@@ -106,7 +106,7 @@ def test_diagrams_that_are_alike_are_one_curve():
     assert len(curves(project)) == 2
     labels = project.cycle.labels
     # Both strokes of the first curve are named at it.
-    assert f"{labels[1]}…{labels[5]}, {labels[13]}…{labels[17]}" in {g.text for g in composed(project, 1).groups}
+    assert f"{labels[1]}…{labels[5]}, {labels[13]}…{labels[17]}" in words(unlettered(project))
 
 
 def test_a_force_on_the_way_back_alone_is_drawn_over_it():

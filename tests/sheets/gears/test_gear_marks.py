@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from tests.sheets.unlettered import unlettered
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.step import value_at
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Text
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.sheet import composed
 
 SHEETS = [("lugansk/shaper", 3), ("press", 3), ("transport/press@07-ЭПС-718", 3), ("transport/crusher@12-СДМ-1908", 3)]
 VIEWS = ("gear.engagement", "gear.mesh", "gear-involute-1", "gear-involute-2", "gear-sliding", "gear-rack", "reducer-velocities",
@@ -19,12 +19,12 @@ OTHER = {"symbol", "table", "dimension", "hatch", "text", "frame"}
 def drawn(request):
     name, n = request.param
     project = Project(read(name))
-    sheet = composed(project, n, steps=True)
+    sheet = unlettered(project, n)
     steps = {}
     for plans in project.plans.values():
         for plan in (plans or {}).values():
             steps |= {f"{plan.name}/{s.name}": (plan, s) for s in plan}
-    return sheet, steps, [m for m in sheet.drawing.marks if m.of in VIEWS and not isinstance(m, Text)]
+    return sheet, steps, [m for m in sheet.marks if m.of in VIEWS and not isinstance(m, Text)]
 
 
 def test_every_mark_has_a_role(drawn):

@@ -8,6 +8,7 @@ import pytest
 from tests import project_files
 from tests.few import few
 from tests.project_files import EVEN, SLIDER, from_file, project
+from tests.sheets.unlettered import unlettered
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.scale import handy
@@ -225,9 +226,9 @@ def test_the_way_of_the_output_grows_with_its_axis(sense):
     """Both axes of the force over the path begin where the stroke begins, whichever way it goes."""
     own = project(project_files.SLIDER, project_files.WORKING, project_files.MASS, project_files.MOMENT, project_files.FORCE,
                   {"project.sheets": ["kinematics_forces"], "cycle.working_sense": sense, "force[1].sense": sense})
-    drawing = composed(own, 1).drawing
-    up, along = (m for m in drawing.marks if isinstance(m, Line) and m.by and (m.by.role, m.by.step) == ("axis", "loads/F3"))
-    (curve,) = (m for m in drawing.marks if isinstance(m, Polyline) and m.by and (m.by.role, m.by.step) == ("curve", "loads/F3"))
+    marks = unlettered(own).marks
+    up, along = (m for m in marks if isinstance(m, Line) and m.by and (m.by.role, m.by.step) == ("axis", "loads/F3"))
+    (curve,) = (m for m in marks if isinstance(m, Polyline) and m.by and (m.by.role, m.by.step) == ("curve", "loads/F3"))
     begin, *_, end = np.real(curve.points)
     assert along.a == up.a
     assert up.a.real == pytest.approx(begin, abs=0.01)

@@ -5,16 +5,12 @@ from math import acos, degrees
 import pytest
 
 from tests.project_files import NOMINAL, from_file, known, project
-from tmm_sheets.sheets.sheet import composed
-
-
-def words(drawing):
-    return " ".join(mark.text for mark in drawing.marks if hasattr(mark, "text"))
+from tests.sheets.unlettered import unlettered, words
 
 
 @pytest.mark.parametrize("nominal", [False, True], ids=["exact", "nominal"])
 def test_it_is_told_once(nominal):
-    text = words(composed(project(from_file("lugansk/shaper"), NOMINAL) if nominal else known("lugansk/shaper"), 1).drawing)
+    text = " ".join(words(unlettered(project(from_file("lugansk/shaper"), NOMINAL) if nominal else known("lugansk/shaper"))))
     assert text.count("отстоят") == nominal
     beside = (216 - (360 - 2 * degrees(acos(0.08 / 0.26)))) / 2
     assert (f"на {beside:.2f}°".replace(".", ",") in text) is nominal
