@@ -16,7 +16,7 @@ import tmm_sheets
 from tests.odd_projects import SMALL, SOURCES, case
 
 CAM, ROOT = "lugansk/cam_flat", Path(tmm_sheets.__file__).parents[1]
-DRAWN = ["build", CAM, "--format", "svg,hpgl", "-o", "o"]
+DRAWN = ["build", CAM, "--format", "svg,dxf", "-o", "o"]
 REFUSED = [["check", "nobody"], ["check", "my.toml"], ["build", "nobody", "-o", "o"], ["solve", CAM, "--part", "forces"],
            ["build", CAM, "--sheet", "9"], ["why", CAM, "x.y"], ["show", "transport/press@1"],
            ["compare", CAM, "--measured", "no.csv"], ["plot", CAM, "--plotter", "x"], ["page", CAM, "--plan", "x"],

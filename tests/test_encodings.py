@@ -19,7 +19,7 @@ from tmm_sheets.errors import BadInput
 from tmm_sheets.task import variant
 
 ROOT = Path(__file__).parents[1]
-PRESS = catalogue.read("press").text
+PRESS, CAM = (catalogue.read(name).text for name in ("press", "lugansk/cam_flat"))
 RUSSIAN = "Привод пресса, №3: «μ» нет\nтитул – да\n".replace("μ", "m")
 
 CONSOLES = {
@@ -53,8 +53,8 @@ def test_redirected_output_is_utf_8(line, console, capsys):
 
 @pytest.mark.parametrize("console", few(OTHERS, "C"))
 def test_results_and_tables_are_utf_8(console, tmp_path):
-    done = command("solve", "press", "--json", "-", "--part", "flywheel", console=console)
-    assert json.loads(done.stdout.decode("utf-8"))["project"] == "press"
+    done = command("solve", "lugansk/cam_flat", "--json", "-", console=console)
+    assert json.loads(done.stdout.decode("utf-8"))["project"] == "lugansk/cam_flat"
     done = command("compare", "lugansk/cam_flat", "--template", "-o", tmp_path, console=console)
     assert done.returncode == 0
     assert "# project: lugansk/cam_flat" in (tmp_path / "measured.csv").read_text(encoding="utf-8-sig")
@@ -75,9 +75,9 @@ def test_the_documented_start(console, tmp_path):
     """``show --file > my.toml``, and the same with -o: the file itself, which passes."""
     mine, other = tmp_path / "my.toml", tmp_path / "folder" / "other.toml"
     with mine.open("wb") as file:
-        assert command("show", "press", "--file", console=console, stdout=file, capture_output=False).returncode == 0
-    assert command("show", "press", "--file", "-o", other, console=console).returncode == 0
-    assert mine.read_bytes() == other.read_bytes() == PRESS.encode()
+        assert command("show", "lugansk/cam_flat", "--file", console=console, stdout=file, capture_output=False).returncode == 0
+    assert command("show", "lugansk/cam_flat", "--file", "-o", other, console=console).returncode == 0
+    assert mine.read_bytes() == other.read_bytes() == CAM.encode()
     assert command("check", mine, console=console).stdout.decode() == f"{mine}: OK\n"
 
 

@@ -254,7 +254,7 @@ def test_letters_of_a_lesson_are_apart(name, tmp_path):
 def test_reachable_angles(rod, tmp_path):
     """Where the rod reaches its guide, by places of the rocker's end written down here; nothing is told if it does all round."""
     path = tmp_path / "page.html"
-    path.write_text(made("sixbar/1:1"), encoding="utf-8")
+    path.write_text(made("sixbar/1:1", (1,)), encoding="utf-8")
     with browser() as page:
         page.open(f"{path.as_uri()}#plan=velocities&step=3&phi=126")
         page.until("!!document.querySelector('html[data-ready]')")

@@ -76,7 +76,7 @@ def test_sheets_are_clean(project, sheet):
 
 @pytest.mark.parametrize("project", few(FILES, FEEDER), indirect=True, ids=NAME)
 def test_other_positions_can_be_the_analysed_one(project):
-    for label in project.cycle.labels[1::8]:
+    for label in project.cycle.labels[1::12]:
         cycle = project.variant.cycle.model_copy(update={"force_position": label})
         other = Project(project.variant.model_copy(update={"cycle": cycle}))
         other.study = project.study

@@ -20,7 +20,7 @@ from tmm_sheets.mechanism.groups import PRP, RRP, RRR, two_links
 from tmm_sheets.mechanism.model import Crank, Guide, StructuralGroup
 from tmm_sheets.methods.linkage import forces, motion, positions, zhukovsky
 
-CASES = 6 * len(SCENES)
+CASES = 4 * len(SCENES)
 MANY = 10 * len(SCENES)
 """For what only some cases tell."""
 FOLDING = ("parallelogram", "antiparallelogram", "kite", "slider-crank", "four-bar that folds", "parallelograms in a row")
@@ -38,7 +38,7 @@ def test_every_bound_holds(worst):
 
 def test_every_invariant_is_told_of(worst):
     assert set(worst) == set(BOUNDS) - {cases.MEMORY}
-    assert all(w.cases > 5 for w in worst.values())
+    assert all(w.cases > 3 for w in worst.values())
 
 
 def test_rounding_is_all_there_is(worst):
