@@ -50,8 +50,10 @@ LONGEST = (
 
 
 TOGETHER = {"compare/test_doubtful_fits": "compare/test_image", "living/test_lesson": "living/test_page",
-            "note/test_files": "note/test_content", "note/test_pages": "note/test_content"}
-"""Files that read what another one makes once a process: a photograph laid over its sheet, pages, a note; one worker runs both."""
+            **dict.fromkeys(("note/test_files", "note/test_notes", "note/test_pages"), "note/test_content"),
+            "test_import_rules": "test_words"}
+"""Files that read what another one makes once a process: a photograph laid over its sheet, pages, a note, syntax trees; one worker
+runs both."""
 
 
 @pytest.hookimpl(optionalhook=True)

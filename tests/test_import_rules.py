@@ -5,12 +5,11 @@ One way, no back and forth: task, mechanism, construction -> methods -> project 
 
 import ast
 from functools import cache
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[1] / "tmm_sheets"
-MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts): p for p in ROOT.rglob("*.py")}
+from tests.sources import MODULES, every_node, syntax
+
 NEUTRAL = ("apart box csv_tables defects encodings errors files kept meanings numbers quoting resources "
            "spelling terminal toml_file version words")
 METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.integration"
@@ -108,6 +107,7 @@ def row(module):
     return max((room for room in RULES if within(module, room)), key=len, default=None)
 
 
+@cache
 def imports(tree):
     """(module, inside a function, for type checking only) of every import of a syntax tree."""
 
@@ -127,7 +127,7 @@ def imports(tree):
                 deeper = inside or isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef)
                 yield from visit(child, deeper, typing)
 
-    yield from visit(tree, False, False)
+    return [*visit(tree, False, False)]
 
 
 @cache
@@ -154,11 +154,6 @@ def broken(module, tree):
             yield f"{module} imports {name}"
         if top in LATE and not (inside or typing) and (top == "shapely" or not within(module, NUMBERS)):
             yield f"{module} imports {name} at its top: the command line waits for it"
-
-
-@cache
-def syntax(module):
-    return ast.parse(MODULES[module].read_text(encoding="utf-8"))
 
 
 def test_imports():
@@ -229,7 +224,7 @@ def test_circles_are_found():
 @cache
 def functions(tree):
     """Each function of a syntax tree with all nodes in it."""
-    return [(function, [*ast.walk(function)]) for function in ast.walk(tree) if isinstance(function, ast.FunctionDef)]
+    return [(function, every_node(function)) for function in every_node(tree) if isinstance(function, ast.FunctionDef)]
 
 
 CHANGES = {"append", "extend", "insert", "pop", "remove", "clear", "update", "setdefault", "add", "discard", "popitem", "sort"}

@@ -15,6 +15,7 @@ import pytest
 from babel.messages.mofile import read_mo
 
 from tests import catalogues
+from tests.sources import MODULES, every_node, syntax
 from tmm_sheets import __main__, cli, words
 from tmm_sheets.errors import BadInput
 from tmm_sheets.output import batch
@@ -68,11 +69,11 @@ def test_no_text_hides_from_the_catalogues():
     """What collects the texts does not look into f-strings."""
     known = {text[0] if isinstance(text, tuple) else text for _, text in texts(template())}
     asked = catalogues.KEYWORDS.keys() - {"tr_in", "of_language"}  # these begin with the context
-    for path in (ROOT / "tmm_sheets").rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for module in MODULES:
+        for node in every_node(syntax(module)):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in asked:
                 said = node.args[0]
-                assert not isinstance(said, ast.Constant) or said.value in known, (path, said.lineno, said.value)
+                assert not isinstance(said, ast.Constant) or said.value in known, (module, said.lineno, said.value)
 
 
 def test_options_that_are_told_exist():

@@ -1,5 +1,6 @@
 """What was told and written is given again only for the same question, and where nothing is in its way."""
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -11,12 +12,29 @@ from tmm_sheets.task import title_entries
 BUILD = ("build", "my.toml", "--format", "pdf,svg")
 
 
+def copy():
+    """A project of somebody's own in this folder."""
+    Path("my.toml").write_bytes(catalogue.shipped_path("lugansk/cam_flat").read_bytes())
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """What a build of it keeps."""
+    folder = tmp_path_factory.mktemp("built")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setenv(kept.FOLDER, str(folder / "kept"))
+        copy()
+        assert run([*BUILD, "-o", "a"]) == 0
+    return folder / "kept"
+
+
 @pytest.fixture
 def asked(tmp_path, monkeypatch, capsys):
     """Carry a command out on a copy of a project: exit status, what was told, and whether anything was kept that was not before."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv(kept.FOLDER, str(tmp_path / "kept"))
-    Path("my.toml").write_bytes(catalogue.shipped_path("lugansk/cam_flat").read_bytes())
+    copy()
 
     def ask(*arguments):
         before = {*Path("kept").glob("*")}
@@ -90,8 +108,9 @@ OTHERS = {
 
 
 @pytest.mark.parametrize("what", OTHERS)
-def test_another_question(asked, monkeypatch, what):
-    asked(*BUILD, "-o", "a")
+def test_another_question(asked, built, monkeypatch, what):
+    shutil.copytree(built, "kept")
+    assert asked(*BUILD, "-o", "a")[3] is False
     other, more = OTHERS[what], ()
     if callable(other):
         other(monkeypatch)
