@@ -1,12 +1,14 @@
 import pytest
 
-from tests.note.opened import composed, opened
+from tests.note.opened import noted, opened_once
 from tmm_sheets.note import composing
+
+NAME = "lugansk/shaper"
 
 
 @pytest.fixture(scope="session")
 def project():
-    return opened("lugansk/shaper")
+    return opened_once(NAME)
 
 
 @pytest.fixture(scope="session")
@@ -15,5 +17,14 @@ def reader(project, note):
 
 
 @pytest.fixture(scope="session")
-def note(project):
-    return composed(project)
+def note():
+    return noted(NAME)
+
+
+@pytest.fixture(scope="session")
+def printed(note):
+    """The note with its figures in their places, its PDF, and on which pages everything is."""
+    pytest.importorskip("typst")
+    from tmm_sheets.note import typst_writer
+
+    return typst_writer.render(note)

@@ -1,5 +1,7 @@
 """Projects and their notes, as the command opens them."""
 
+from functools import cache
+
 from tmm_sheets import catalogue, words
 from tmm_sheets.note import composing
 from tmm_sheets.project import Project
@@ -12,3 +14,12 @@ def opened(name):
 def composed(project, language="ru"):
     with words.on_paper(language):
         return composing.compose(project)
+
+
+opened_once = cache(opened)
+
+
+@cache
+def noted(name, language="ru"):
+    """A note for all who only read it."""
+    return composed(opened_once(name), language)

@@ -49,11 +49,8 @@ def test_contents_and_abstract_tell_the_true_pages(cam):
         assert title in found[page - 1]
 
 
-def test_shaper_is_as_long_as_the_manuals_want(project, note):
-    pytest.importorskip("typst")
-    from tmm_sheets.note import typst_writer
-
-    _, data, places = typst_writer.render(note)
+def test_shaper_is_as_long_as_the_manuals_want(note, printed):
+    _, data, places = printed
     assert 30 <= places["pages"] <= 48
     # Each has its page in the contents, of Word's file too: also the remarks on the manual, which have no number.
     assert len(places["headings"]) == sum(isinstance(b, Heading | Sheet) for b in note.blocks())

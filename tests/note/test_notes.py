@@ -7,7 +7,7 @@ import pytest
 
 from tests.few import few, seldom
 from tests.note import check_notes
-from tests.note.opened import composed, opened
+from tests.note.opened import composed, noted, opened
 from tmm_sheets import words
 from tmm_sheets.construction.formula import Figures, FormulaRow, Letters, Sign, Words, letters
 from tmm_sheets.note import phrases
@@ -19,7 +19,7 @@ READ = [(name, "ru") for name in check_notes.SHARE] + [("lugansk/engine", "uk"),
 
 @pytest.mark.parametrize(("name", "language"), few(READ, READ[0]))
 def test_a_note_has_no_fault(name, language):
-    note = composed(opened(name), language)
+    note = noted(name, language)
     assert list(check_notes.content_faults(note)) == []
     assert check_notes.counted(note) > 30
 

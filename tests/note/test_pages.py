@@ -12,12 +12,11 @@ pytest.importorskip("pypdfium2")
 
 
 @pytest.fixture(scope="module")
-def files(note):
-    pytest.importorskip("typst")
+def files(printed):
     pytest.importorskip("docx")
-    from tmm_sheets.note import composing, docx_writer, typst_writer
+    from tmm_sheets.note import composing, docx_writer
 
-    placed, data, places = typst_writer.render(note)
+    placed, data, places = printed
     return data, docx_writer.render(composing.counted(placed, places["pages"]), places)
 
 
