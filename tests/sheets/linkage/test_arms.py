@@ -8,6 +8,7 @@ import pytest
 from tests import project_files
 from tests.few import seldom
 from tests.sheets.moment_lines import every_line
+from tests.sheets.unlettered import unlettered
 from tmm_sheets import kept as stored
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing import ink_index, labels
@@ -49,7 +50,7 @@ def test_the_moment_with_friction_has_its_sign(monkeypatch):
         return original(canvas, corner, widths, rows, *rest, **options)
 
     monkeypatch.setattr(kinetics.Canvas, "table", keeping)
-    composed(project, 2)
+    unlettered(project, 2)
     (column,) = (cells for head, cells in shown.items() if head.startswith(("M_{д}", "Mд", "M_д")) and head.endswith("Н·м"))
     moments = project.study.balance["M"].value
     assert min(moments) < 0 < max(moments)
