@@ -64,7 +64,9 @@ def compare(data, tmp_path, sheet=2, views=None, project=SHAPER):
     if views is not None:
         (tmp_path / "views.toml").write_text(views, encoding="utf-8")
         views = tmp_path / "views.toml"
-    report = cad_drawing.compare(project, sheet, path, views, 0.25, lambda _: None)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cad_drawing.overlays, "files", lambda *_: {})
+        report = cad_drawing.compare(project, sheet, path, views, 0.25, lambda _: None)
     assert [*faults(report.tree)] == []
     return report
 
