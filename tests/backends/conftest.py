@@ -3,6 +3,7 @@ from math import pi
 import numpy as np
 import pytest
 
+from tests.backends.geometry import area, drawn
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import BAR
 from tmm_sheets.drawing.marks import Drawing
@@ -29,3 +30,9 @@ def drawing() -> Drawing:
     canvas.text(100 + 360j, "Сжатие, Ξ ≤ 30°", 7.0, angle=pi / 2)
     canvas.text(100 + 340j, "ТММ.КП.01", 2.5, angle=pi)
     return Drawing(841.0, 594.0, "Лист 1. Строгальный станок", tuple(canvas.marks), "Иванов И. И.")
+
+
+@pytest.fixture(scope="session")
+def wanted(drawing):
+    """The area that it covers with ink."""
+    return area(drawn(drawing))

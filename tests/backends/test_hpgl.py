@@ -56,12 +56,11 @@ def test_plain_hpgl_says_nothing_an_old_plotter_does_not_know(data):
     assert pens == [1, 2, 3, 4, 5, 6, 7, 0]  # each taken once, thin ones first, put back at the end
 
 
-def test_ink_is_that_of_the_drawing_within_a_twentieth_of_a_millimetre(data, drawing):
+def test_ink_is_that_of_the_drawing_within_a_twentieth_of_a_millimetre(data, wanted):
     widths = {p.number: p.width for p in plotter("a1").pens}
     got = area((shape(path), widths[pen]) for pen, path in pen_paths(data))
-    want = area(drawn(drawing))
-    assert beyond(got, want, 0.1) == 0  # at the tip of an arrow the finest pen, of 0.2 mm, is that much too round
-    assert beyond(want, got, 0.05) == 0
+    assert beyond(got, wanted, 0.1) == 0  # at the tip of an arrow the finest pen, of 0.2 mm, is that much too round
+    assert beyond(wanted, got, 0.05) == 0
 
 
 def test_lines_and_letters_keep_to_half_a_step(drawing):
@@ -116,14 +115,14 @@ def test_a_window_comes_to_the_corner_of_the_paper():
     assert (made.lost, made.width, made.height) == (0, 60, 60)
 
 
-def test_windows_side_by_side_draw_all_of_the_sheet(drawing):
+def test_windows_side_by_side_draw_all_of_the_sheet(drawing, wanted):
     machine = replace(plotter("a1"), reach=Box(0, 0, 400, 276))
     parts = []
     for x in (0, 300, 600):
         for y in (0, 250, 500):
             for layer in plan(drawing, machine, Box(x, y, min(x + 300, 841), min(y + 250, 594))).layers:
                 parts += [(shape(UNIT * (np.array(p) @ [1, 1j]) + complex(x, y)), layer.pen.width) for p in layer.paths]
-    assert beyond(area(drawn(drawing)), area(parts), 0.05) == 0
+    assert beyond(wanted, area(parts), 0.05) == 0
 
 
 # --- HPGL/2 ---------------------------------------------------------------------------------------------------------
@@ -143,7 +142,7 @@ def test_printer_file_is_wrapped_in_pjl(printed):
     assert body.endswith("PU0,0;\nSP0;\nPG;")
 
 
-def test_printer_makes_every_width_and_fills_by_itself(printed, drawing):
+def test_printer_makes_every_width_and_fills_by_itself(printed, drawing, wanted):
     body = printed.partition("\x1b%0B")[2].partition("\x1b%0A")[0].replace("\n", "")
     strokes, width, path, inside = [], None, [], False
     for name, numbers in re.findall(r"([A-Z]{2})([-\d.,]*);", body):
@@ -161,10 +160,10 @@ def test_printer_makes_every_width_and_fills_by_itself(printed, drawing):
             inside = v[0] == 0
         elif name == "FP":
             strokes.append((polygon(np.array(path)), 0.0))
-    got, want = area(strokes), area(drawn(drawing))
+    got = area(strokes)
     assert sum(w == 0 for _, w in strokes) == sum(isinstance(m, Fill) for m in drawing.marks)
-    assert beyond(got, want, STEP_OFF + 0.007) == 0
-    assert beyond(want, got, STEP_OFF + 0.007) == 0
+    assert beyond(got, wanted, STEP_OFF + 0.007) == 0
+    assert beyond(wanted, got, STEP_OFF + 0.007) == 0
 
 
 # --- what the plan says of itself, and reading back -----------------------------------------------------------------
