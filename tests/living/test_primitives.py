@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.few import few
+from tests.few import all_hold, few
 from tests.living import javascript
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.function import told
@@ -11,7 +11,7 @@ from tmm_sheets.mechanism.groups import dead_centres, three_legs
 from tmm_sheets.methods.linkage import forces, loads, synthesis
 
 RUN = javascript.modules("digits", "primitives") + """
-const result = ({ name, rows }) => rows.map((args) => PRIMITIVES[name](...args));
+const result = (asked) => asked.map(({ name, rows }) => rows.map((args) => PRIMITIVES[name](...args)));
 """
 pytestmark = javascript.needed
 
@@ -70,25 +70,34 @@ def close(found, own, size, some=0.05):
     assert (np.abs(found[there] - own[there]) <= 1e-12 * (size + np.abs(own))[there]).all()
 
 
+def all_close(cases, n, folder):
+    """Name of each case, the primitive's arguments, own values and sizes: all of them in one process."""
+    asked = [{"name": name.partition(",")[0], "rows": listed(args, n)} for name, (args, _, _) in cases.items()]
+    found = javascript.run(RUN, asked, folder)
+    told = dict(zip(cases, found, strict=True))
+    all_hold(lambda name: close(told[name], *cases[name][1:]), cases)
+
+
 def listed(args, n):
     """Rows of arguments for JSON."""
     columns = [a if isinstance(a, list) else told(np.broadcast_to(a, (n,))) for a in args]
     return [list(row) for row in zip(*columns, strict=True)]
 
 
-@pytest.mark.parametrize(("name", "count"), [(name, count) for name, (_, takes) in ELEMENTWISE.items()
-                                             for count in SHORTER.get(name, (len(takes),))])
-def test_one_by_one(name, count, n, tmp_path):
-    function, takes = ELEMENTWISE[name]
-    rng = np.random.default_rng(11)
-    args = [kind(rng, what, n) for what in takes[:count]]
-    with np.errstate(all="ignore"):
-        own = function(*args)
-        size = sum(np.nan_to_num(np.abs(a)) for a in args)
-    # The greatest number that is met on the way: where lines cross under next to no angle, the point itself.
-    if name in ("cross", "dot", "difference of products"):
-        size = size * size
-    close(javascript.run(RUN, {"name": name, "rows": listed(args, n)}, tmp_path), own, size)
+def test_one_by_one(n, tmp_path):
+    cases = {}
+    for name, (function, takes) in ELEMENTWISE.items():
+        for count in SHORTER.get(name, (len(takes),)):
+            rng = np.random.default_rng(11)
+            args = [kind(rng, what, n) for what in takes[:count]]
+            with np.errstate(all="ignore"):
+                own = function(*args)
+                size = sum(np.nan_to_num(np.abs(a)) for a in args)
+            # The greatest number that is met on the way: where lines cross under next to no angle, the point itself.
+            if name in ("cross", "dot", "difference of products"):
+                size = size * size
+            cases[f"{name}, {count}"] = args, own, size
+    all_close(cases, n, tmp_path)
 
 
 def mechanisms(rng, n):
@@ -101,21 +110,20 @@ def mechanisms(rng, n):
     return kind(rng, "angle", n), *(np.repeat(x, 10) for x in (l1, l2, l3, fixed, ahead, guide))
 
 
-@pytest.mark.parametrize("name", ["distance from the crank's point", "half-chord of two arcs", "tangent from the crank's point",
-                                  "half-chord of arc and line", "foot on a guide"])
-def test_from_the_crank_angle(name, n, tmp_path):
+def test_from_the_crank_angle(n, tmp_path):
     phi, l1, l2, l3, fixed, ahead, guide = mechanisms(np.random.default_rng(5), n)
     zero = np.zeros(n, dtype=complex)
-    function, args = {
+    cases = {}
+    for name, (function, args) in {
         "distance from the crank's point": (dead_centres.pin_distance, (phi, l1, ahead, zero, fixed)),
         "half-chord of two arcs": (dead_centres.half_of_arcs, (phi, l1, ahead, zero, fixed, l2, l3)),
         "tangent from the crank's point": (dead_centres.tangent_length, (phi, l1, ahead, zero, fixed, l2 / 4)),
         "half-chord of arc and line": (dead_centres.half_of_line, (phi, l1, ahead, l2, zero, 0.2 * fixed, guide)),
         "foot on a guide": (dead_centres.foot_on_guide, (fixed, 1e3 * fixed * 1j, guide)),
-    }[name]
-    with np.errstate(all="ignore"):
-        own = np.array([function(*(x.item() for x in row)) for row in zip(*args, strict=True)])
-    close(javascript.run(RUN, {"name": name, "rows": listed(args, n)}, tmp_path), own, 1e-3 * l1)
+    }.items():
+        with np.errstate(all="ignore"):
+            cases[name] = args, np.array([function(*(x.item() for x in row)) for row in zip(*args, strict=True)]), 1e-3 * l1
+    all_close(cases, n, tmp_path)
 
 
 def legs_of(rng, does, n):
@@ -164,7 +172,7 @@ def test_triangles(name, n, tmp_path):
                 values.append([np.ravel(function(*(x[i] for x in args)))[0] for i in range(m)] if more else function(*args))
         rows += listed((k, u, *more, *legs), m)
     own, other = np.concatenate(owns), np.concatenate(others)
-    found = javascript.run(RUN, {"name": name, "rows": rows}, tmp_path)
+    (found,) = javascript.run(RUN, [{"name": name, "rows": rows}], tmp_path)
     # Where the last digit of an argument moves the value there is nothing to compare: normals that all but meet in one point.
     there = np.isnan(own) == np.isnan(other)
     there &= ~(np.abs(own - other) > 1e-13)

@@ -9,6 +9,7 @@ import pytest
 
 from tests.few import few
 from tests.sheets.moment_lines import every_line
+from tests.sheets.unlettered import unlettered, words
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.scale import Scale
@@ -247,9 +248,9 @@ def test_what_is_offered_is_drawn_where_there_is_room():
 
 @pytest.mark.parametrize(("name", "apart"), [("tests/projects/planer.toml", True), ("lugansk/shaper", False)])
 def test_equations_without_room_under_their_figures_stand_apart(name, apart):
-    sheet = composed(Project(read(name)), 1)
-    assert any(part.draw == "kinetics.moments" for part in sheet.parts) == apart
-    assert not any("в записке" in group.text for group in sheet.groups)
+    canvas = unlettered(Project(read(name)))
+    assert any(part.draw == "kinetics.moments" for part in canvas.parts) == apart
+    assert not any("в записке" in text for text in words(canvas))
 
 
 def test_where_equations_have_no_room_and_no_view_it_is_said_where_they_are_read(monkeypatch):
