@@ -42,7 +42,7 @@ gc.set_threshold(50_000, 20, 20)
 LONGEST = (
     "test_docs", "note/test_content", "compare/test_image", "living/test_page", "test_cli", "compare/test_cad", "test_attack",
     "sheets/test_kept_sheets", "output/test_batch", "test_api", "stress/test_stress", "test_counts", "bench/test_bench",
-    "compare/test_plan_judge", "compare/test_languages", "test_words", "sheets/test_plan_scales", "task/families/test_transport",
+    "compare/test_plan_judge", "compare/test_languages", "test_words", "output/test_again", "task/families/test_transport",
     "record/test_record", "sheets/test_user_projects", "test_doors", "test_quoted", "compare/test_measured", "test_missing_parts",
     "sheets/test_legibility", "compare/test_line_styles", "note/test_notes", "test_import_rules", "test_encodings",
 )
