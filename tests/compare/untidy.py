@@ -12,10 +12,10 @@ from __future__ import annotations
 import argparse
 import random
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cache
-from itertools import pairwise
+from functools import cache, partial
+from itertools import combinations, pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import process_time
@@ -26,10 +26,15 @@ import numpy as np
 
 from tests.compare.students import OWN
 from tmm_sheets.catalogue import read
+from tmm_sheets.compare.cad import cad_file
+from tmm_sheets.compare.cad.plan_ink import CARELESS_MM, DRAWN_SHARE, MAIN, MIN_DRAWN_MM, TOLERANCE_MM, PlanInk
+from tmm_sheets.compare.cad.plan_judge import Cause, JudgedView, judge_plans
+from tmm_sheets.compare.cad.plan_views import PlanRecord
 from tmm_sheets.compare.diagnosis.hypotheses import Change, Hypothesis, displaced, hypotheses, of_other_positions, replay
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.step import Step, asked_for, ordered
+from tmm_sheets.drawing.marks import Points
 from tmm_sheets.project import Project
 
 CASES = Path(__file__).parent / "cases"
@@ -48,6 +53,7 @@ MOVED = "number"
 """Words that stand for a point that was drawn elsewhere."""
 SHOWS = 2.0
 """How far a mistake must move a point to be one, mm of the drawing."""
+AS_WANTED = ("right", "right too", "named")
 
 
 @dataclass
@@ -61,6 +67,7 @@ class View:
     wrong: list[Hypothesis] = field(default_factory=list)
     moved: str = ""
     reversed_head: str = ""
+    at: complex = 0j
 
 
 @cache
@@ -127,6 +134,8 @@ class Drawing:
             self._spoil()
             if draw > 0.9:
                 self._spoil()
+        for view in self.views:
+            self._only_what_shows(view)
 
     def _views(self) -> list[View]:
         rng, n = self.rng, len(self.labels)
@@ -207,6 +216,38 @@ class Drawing:
                 return
             view.wrong.pop()
 
+    def _only_what_shows(self, view: View) -> None:
+        """Of several mistakes leave those without which the drawing is another one: a second may draw again what a first spoilt."""
+        all_lines = self._vectors(view, view.wrong)
+        for n in range(len(view.wrong)):
+            for some in combinations(view.wrong, n):
+                lines = self._vectors(view, some)
+                if lines.shape == all_lines.shape and np.nanmax(np.abs(lines - all_lines), initial=0.0) < TOLERANCE_MM:
+                    view.wrong = list(some)
+                    return
+
+    def _vectors(self, view: View, wrong: Sequence[Hypothesis]) -> Points:
+        """The lines of a view with some mistakes as vectors, mm."""
+        value = replay(self._errors(view.name), [c for h in wrong for c in h.changes]) if wrong else lambda s: s.value
+        return np.array([(b - a) * view.scale for a, b, _ in lines_of(self.project, view, self.plans[view.name], value, False)])
+
+    def draws(self, view: View, judged: JudgedView, mirrored: bool) -> bool:
+        """Whether what a judge has found draws this view just as it stands there, within a pencil's care."""
+        if judged.fit is None or judged.name != view.name or len(judged.positions) != len(view.ks):
+            return False
+        there, found = ({int(n): (a, b) for a, b, n, kind in zip(at(x.tails), at(x.heads), x.numbers, x.kinds, strict=True)
+                         if kind == MAIN and abs(b - a) > MIN_DRAWN_MM}
+                        for x, at in ((judged.view.lines(view.ks, self.value(view)), partial(self._on_paper, view)),
+                                      (judged.lines, judged.fit.at)))
+        off = [abs(p - (np.conj(q) if mirrored else q)) for n in there.keys() & found.keys()
+               for p, q in zip(there[n], found[n], strict=True)]
+        return there.keys() == found.keys() and max(off, default=0.0) < CARELESS_MM
+
+    def _on_paper(self, view: View, z: Points) -> Points:
+        """Where points of a plan are drawn."""
+        w = (z * view.scale + view.at) * self.turn
+        return -np.conj(w) if self.mirrored else w
+
     def _off(self, view: View, usual: Callable[[Step], Any], now: Callable[[Step], Any]) -> float:
         """By how many mm some line that is drawn is another one than all right lines, wherever it stands and its head is."""
         plan = self.plans[view.name]
@@ -242,7 +283,7 @@ class Drawing:
             plan, value = self.plans[view.name], self.value(view)
             some = [(a * view.scale, b * view.scale, n) for a, b, n in lines_of(self.project, view, plan, value, self.centres)]
             z = np.array([p for a, b, _ in some for p in (a, b)])
-            self.shift = complex(x - z.real.min(), -z.imag.min() + rng.uniform(0, 30))
+            self.shift = view.at = complex(x - z.real.min(), -z.imag.min() + rng.uniform(0, 30))
             for a, b, n in some:
                 if abs(b - a) > 0.8:
                     self._line(a, b, headed=view.name != "positions", back=n == view.reversed_head)
@@ -345,34 +386,59 @@ class Drawing:
             hatch.paths.add_polyline_path([self._at(z + d) for d in (0, 20, 20 + 8j, 8j)], is_closed=True)
 
 
-def outcome(drawing: Drawing, path: Path) -> tuple[dict[str, tuple[str, list[str], list[str]]], str]:
-    """What the comparison says: by title the verdict, what was done, reversed heads; why it was refused."""
-    from tmm_sheets.compare.cad import cad_file
-    from tmm_sheets.compare.cad.plan_ink import PlanInk
-    from tmm_sheets.compare.cad.plan_judge import judge_plans
-    from tmm_sheets.compare.cad.plan_views import PlanRecord
+@dataclass(frozen=True)
+class Said:
+    """What the comparison says of a view; ``same``: with what it says was done the view would be drawn as it is."""
 
+    kind: str = "missing"
+    causes: tuple[Cause, ...] = ()
+    heads: tuple[str, ...] = ()
+    same: bool = False
+    absent: tuple[Step, ...] = ()
+
+    @property
+    def words(self) -> list[str]:
+        return [c.remark.said() for c in self.causes]
+
+
+def outcome(drawing: Drawing, path: Path) -> tuple[dict[str, Said], str]:
+    """What the comparison says by title, and why it was refused."""
     ink = cad_file.read(path)
     found = judge_plans(PlanRecord(drawing.project), PlanInk(ink.spaces[0], ink.unit))
+    by_title = {v.title: v for v in drawing.views}
     out = {}
     for v in found.views:
-        heads = [v.view.pairs[int(v.lines.numbers[i]) % len(v.view.pairs)][3] for i in v.reversed_heads or ()]
-        out[v.title] = (v.kind, [c.remark.said() for c in v.causes], heads)
+        heads = tuple(v.view.pairs[int(v.lines.numbers[i]) % len(v.view.pairs)][3] for i in v.reversed_heads or ())
+        same = bool(v.title in by_title and drawing.draws(by_title[v.title], v, found.mirrored))
+        absent = tuple(v.view.pairs[n % len(v.view.pairs)][1] for n in v.lines.numbers[v.fit.drawn < DRAWN_SHARE].tolist()) if (
+            v.fit is not None) else ()
+        out[v.title] = Said(v.kind, v.causes, heads, same, absent)
     return out, "" if found.fitting else "no view fits"
 
 
-def judged(drawing: Drawing, found: dict[str, tuple[str, list[str], list[str]]]) -> Iterator[tuple[View, str]]:
-    """Each view with what came of it: as wanted, false, missed, listed, misnamed."""
+def judged(drawing: Drawing, found: dict[str, Said]) -> Iterator[tuple[View, str]]:
+    """Each view with what came of it: as wanted, false, missed, listed, misnamed.
+
+    No judge can tell from each other what draws the same. Then a mistake of the dictionary is as good as that which was made, and
+    a point that lies elsewhere as another one; and what is a right plan too, of a position that no title names, is right.
+    """
     for view in drawing.views:
-        kind, causes, heads = found.get(view.title, ("missing", [], []))
+        said = found.get(view.title, Said())
+        kind, causes, heads = said.kind, said.words, list(said.heads)
         if not view.wrong and not view.reversed_head:
             yield view, "right" if kind == "right" and not heads else f"false ({kind} {causes[:1]} {heads})"
         elif view.reversed_head and not view.wrong:
             yield view, "named" if heads and kind == "right" else f"missed head ({kind} {causes[:1]})"
+        elif said.same and kind == "right":
+            yield view, "right too"
+        elif kind == "right" and all(h.kind == "left out" and h.step in said.absent for h in view.wrong):
+            yield view, "named"  # as not drawn; what follows from it is less than a pencil's care
         else:
             wanted = [f"point {view.moved} lies" if h.words == MOVED else h.said() for h in view.wrong]
             hit = sum(any(c.startswith(w.split(" lies")[0]) for c in causes) for w in wanted)
-            yield view, ("named" if hit == len(wanted) else "half named" if hit else f"missed ({wanted})" if kind == "right" else
+            alike = said.same and (view.moved or all(c.mistake is not None for c in said.causes[:1]))
+            yield view, ("named" if hit == len(wanted) or alike else "half named" if hit else
+                         f"missed ({wanted})" if kind == "right" else
                          f"listed ({wanted})" if kind in ("partly", "unlike") else f"misnamed {causes[:2]} for {wanted}")
 
 
@@ -393,7 +459,7 @@ def trial(count: int, seed: int, first: int = 0, show: bool = False) -> Counter[
             total["drawings"] += 1
             total["refused"] += bool(refused)
             results = list(judged(drawing, found))
-            bad = [(v, r) for v, r in results if r not in ("right", "named")]
+            bad = [(v, r) for v, r in results if r not in AS_WANTED]
             total["as wanted"] += not bad
             total["right drawings"] += drawing.right
             for _, r in results:

@@ -145,10 +145,10 @@ class PlanInk:
         numbers: dict[tuple[str, str, float | None], int] = {}
         self.look = np.array([numbers.setdefault((e.layer, e.pattern, e.width), len(numbers)) for e in entities], dtype=np.intp)
 
-    def freed(self, mirrored: bool) -> PlanInk:
-        """The drawing as if its lettering told no turn; ``mirrored``: reflected in the x axis, its lettering still read."""
+    def otherwise(self, turn: float, mirrored: bool = False) -> PlanInk:
+        """The drawing with its plans turned so; ``mirrored``: reflected in the x axis, its lettering still read."""
         other = PlanInk(self.space.placed(Placing(mirrored=mirrored)), 1.0, scaled=True)
-        other.turn = float("nan")
+        other.turn = turn
         return other
 
     def figures(self, some: Numbers) -> list[Numbers]:
@@ -243,6 +243,8 @@ def extend(a: Points, b: Points, heads: Sequence[tuple[complex, complex]], joint
             there = (w.real > 0.2) & (w.real < MAX_HEAD_MM) & (np.abs(np.angle(ways / u)) < 0.2) if at is tips else (
                 np.abs(w.real - radii) < 0.3)
             there &= np.abs(w.imag) < 0.3
+            if at is tips:
+                there[(np.abs(w) < TOLERANCE_MM).any(1)] = False  # it has its own
             n = np.flatnonzero(there.any(1))
             end[n] = at[there[n].argmax(1)] if len(n) else 0
 
@@ -252,8 +254,11 @@ def _support_strokes(s: NDArray[np.complex128]) -> list[int]:
     d = s[:, 1] - s[:, 0]
     size = np.abs(d)
     short = np.flatnonzero(size < MAX_HATCH_MM)
-    i, j = _close((s[short, 0] + s[short, 1]) / 2, MAX_HATCH_MM)
+    middle = (s[short, 0] + s[short, 1]) / 2
+    i, j = _close(middle, MAX_HATCH_MM)
     alike = (np.abs((d[short[i]] / d[short[j]]).imag) < 0.05) & (np.abs(size[short[i]] / size[short[j]] - 1) < 0.1)
+    # They stand beside each other: heads of vectors on one line do not.
+    alike &= np.abs(((middle[j] - middle[i]) / d[short[i]]).imag) * size[short[i]] > TOLERANCE_MM
     rows = hanging_together(len(short), i[alike], j[alike])
     hatch = {n for row in rows if len(row) > 3 for n in short[row].tolist()}
     if not hatch:
@@ -358,6 +363,12 @@ class Figure:
         a, b = ink.a[strokes], ink.b[strokes]
         soft = ink.auxiliary[strokes]
         return cls(strokes, a, b, soft | _without_heads(ink, a, b, strokes) if vectors else soft)
+
+    def part(self, some: NDArray[np.bool_]) -> Figure:
+        """Some of its strokes, at the place that is known."""
+        part = Figure(self.strokes[some], self.a[some], self.b[some], self.soft[some])
+        part.place = self.place
+        return part
 
     def against(self, fit: Fit) -> float:
         """What speaks against a plan at a place, mm: ink that it does not explain; what is not drawn may be left out."""
@@ -515,18 +526,24 @@ def _without_heads(ink: PlanInk, a: Points, b: Points, strokes: Numbers) -> NDAr
 def reversed_heads(ink: PlanInk, lines: PlanLines, fit: Fit) -> list[int] | None:
     """Numbers of the lines with a head at the wrong end; None where no head of the view is read.
 
-    A head is of one vector: of one that it is the right head of, if there is any.
+    A head is of one vector, and a vector has one head: where it is the right one of a vector that has none yet, it is that one's.
     """
     a, b = fit.at(lines.tails), fit.at(lines.heads)
     size = np.abs(b - a)
-    shown = [i for i in range(len(a)) if fit.drawn[i] >= DRAWN_SHARE and size[i] > MIN_DRAWN_MM]
-    read, wrong = 0, []
-    for tip, way in ink.heads:
-        right = any(_aimed(b[i], tip, way, b[i] - a[i]) for i in shown)
-        back = [i for i in shown if size[i] > 2 and lines.kinds[i] != OTHERS and _aimed(a[i], tip, way, a[i] - b[i])]
-        read += right or bool(back)
-        wrong += [] if right else back[:1]
-    return wrong if read else None
+    shown = sorted((i for i in range(len(a)) if fit.drawn[i] >= DRAWN_SHARE and size[i] > MIN_DRAWN_MM),
+                   key=lambda i: lines.kinds[i] == OTHERS)
+    pairs = sorted((lines.kinds[i] == OTHERS, abs(np.angle(way / (b[i] - a[i]))), n, i) for n, (tip, way) in enumerate(ink.heads)
+                   for i in shown if _aimed(b[i], tip, way, b[i] - a[i]))
+    mine: dict[int, int] = {}
+    for *_, n, i in pairs:
+        if n not in mine.values() and i not in mine:
+            mine[i] = n
+    wrong = []
+    for n, (tip, way) in enumerate(ink.heads):
+        back = [i for i in shown if i not in mine and size[i] > 2 and lines.kinds[i] != OTHERS
+                and _aimed(a[i], tip, way, a[i] - b[i])]
+        wrong += [] if n in mine.values() else back[:1]
+    return wrong if mine or wrong else None
 
 
 def _aimed(at: complex, tip: complex, way: complex, along: complex) -> bool:

@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from operator import itemgetter
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -132,6 +132,16 @@ class JudgedPlans:
         return [v for v in self.views if v.kind in ("right", "mistake", "partly")]
 
     @property
+    def right(self) -> int:
+        """How many views are right."""
+        return sum(v.kind == "right" for v in self.views)
+
+    @property
+    def named(self) -> int:
+        """How many are right or have a mistake that is named; those that are right count twice."""
+        return self.right + sum(v.kind in ("right", "mistake") for v in self.views)
+
+    @property
     def explained(self) -> float:
         """Share of the straight ink that belongs to such views."""
         size = np.minimum(np.abs(self.ink.b - self.ink.a), COUNTED_MM)
@@ -140,15 +150,17 @@ class JudgedPlans:
 
 
 def judge_plans(record: PlanRecord, ink: PlanInk) -> JudgedPlans:
-    """Judge the plans of a drawing; where none fits, also turned against its lettering, and seen from behind."""
+    """Judge the plans of a drawing; where few are right, also as seen from behind, where none is, turned against its lettering."""
     found = JudgedPlans(ink, *_Judge(record, ink).judged())
-    if any(v.kind == "right" for v in found.views) or not len(ink.a):
+    if 2 * found.right > len(found.views) or not len(ink.a):
         return found
-    others = [JudgedPlans(turned, *_Judge(record, turned).judged(), mirrored, not mirrored)
-              for mirrored in (False, True) for turned in [ink.freed(mirrored)]]
-    best = max(others, key=lambda o: sum(v.kind == "right" for v in o.views))
-    better = sum(v.kind == "right" for v in best.views)
-    return best if better > 1 or (better and not found.fitting) else found
+    others = [JudgedPlans(other, *_Judge(record, other).judged(), mirrored=True)
+              for turn in (-ink.turn, np.pi - ink.turn) for other in [ink.otherwise(turn, mirrored=True)]]
+    if not any(o.right for o in (found, *others)):
+        other = ink.otherwise(np.nan)
+        others.append(JudgedPlans(other, *_Judge(record, other).judged(), askew=True))
+    best = max(others, key=lambda o: o.named)
+    return best if best.right > found.right and best.named > found.named else found
 
 
 class _Judge:
@@ -159,22 +171,29 @@ class _Judge:
         self.titles = titles(ink.texts)
         labels = Counter(t.label for t in self.titles if t.label in record.labels)
         self.usual = record.labels.index(labels.most_common(1)[0][0]) if labels else None
+        self.turn = ink.turn
 
     def judged(self) -> tuple[tuple[JudgedView, ...], tuple[Numbers, ...]]:
         """All views, and the figures that are none."""
         whole = self._whole_plans()
-        free = np.setdiff1d(np.arange(len(self.ink.a)), [n for *_, claimed in whole for n in claimed.tolist()])
+        if whole and not np.isfinite(self.turn):  # a drawing has one turn: that of the largest plan that is there
+            self.turn = float(np.angle(max((w[-1] for w in whole), key=lambda fit: fit.own).scale))
+            whole = self._whole_plans()
+        alone = Counter(ks[0] for _, _, ks, *_ in whole if len(ks) == 1)
+        if self.usual is None and alone:  # nor are plans of many positions drawn
+            self.usual = alone.most_common(1)[0][0]
+        free = np.setdiff1d(np.arange(len(self.ink.a)), [n for *_, claimed, _ in whole for n in claimed.tolist()])
         rest = [f for some in self._figures(free) if (f := Figure.of_drawing(self.ink, some)).ink > MIN_REST_MM
                 and not self.ink.is_frame(some)]
         open_titles = [n for n in range(len(self.titles)) if n not in {w[0] for w in whole}]
         out, used = self._with_mistakes(open_titles, rest)
         left = [f for n, f in enumerate(rest) if n not in used]
         # What is left beside a plan that is there is of that view: extra lines, or others than it should have.
-        for n, name, ks, claimed in whole:
+        for n, name, ks, claimed, _ in whole:
             beside = [f for f in left if self.ink.gap(claimed, f.strokes) < MAX_GAP_MM]
             left = [f for f in left if f not in beside]
             mine = np.concatenate([claimed, *(f.strokes for f in beside)])
-            out.append(judge_view(self.record, self.titles[n].text, name, ks, self._figure(mine, name), self.ink.turn))
+            out.append(self._with_another_position(self._judged(self.titles[n].text, name, ks, mine)))
         out += [self._without_ink(self.titles[n]) for n in open_titles if all(v.title != self.titles[n].text for v in out)]
         untitled = sorted((f for f in left if f.ink > MIN_UNTITLED_MM and len(f.strokes) > 2), key=lambda f: -f.ink)[:MAX_UNTITLED]
         judged = [self._untitled(f) for f in untitled]
@@ -184,20 +203,44 @@ class _Judge:
                 v.reversed_heads = reversed_heads(self.ink, v.lines, v.fit)
         return tuple(out), tuple(f.strokes for f, v in zip(untitled, judged, strict=True) if v is None)
 
+    def _judged(self, title: str, name: str, ks: tuple[int, ...], strokes: Numbers) -> JudgedView:
+        return judge_view(self.record, title, name, ks, self._figure(strokes, name), self.turn)
+
+    def _with_another_position(self, v: JudgedView) -> JudgedView:
+        """Of many positions, where not all ink is theirs, the view with that one besides in which a mistake was made."""
+        if v.kind != "partly" or len(v.positions) == 1 or v.fit is None:
+            return v
+        figure = self._figure(v.strokes, v.name)
+        figure.place = v.fit.scale, v.fit.origin
+        found: list[tuple[float, JudgedView]] = []
+        for k in range(len(self.record.labels)):
+            ks = tuple(dict.fromkeys((*v.positions, k)))
+            search = _MistakeSearch(self.record, v.view, v.name, ks, v.view.lines(ks), figure, self.turn, wrong=(k,))
+            if (best := search.best(v.fit)) is not None:
+                found.append((best.price, search.view_of(v.title, best)))
+        return min(found, key=itemgetter(0), default=(0.0, v))[1]
+
     def _figures(self, some: Numbers) -> list[Numbers]:
         return [f for f in self.ink.figures(some) if len(f) <= MAX_STROKES]
 
     def _figure(self, strokes: Numbers, name: str) -> Figure:
         return Figure.of_drawing(self.ink, strokes, vectors=name != "positions")
 
-    def _whole_plans(self) -> list[tuple[int, str, tuple[int, ...], Numbers]]:
-        """Plans that are there as they should be: number of the title, plan, positions, its strokes."""
+    def _whole_plans(self) -> list[tuple[int, str, tuple[int, ...], Numbers, Fit]]:
+        """Plans that are there as they should be: number of the title, plan, positions, its strokes, where it lies.
+
+        What several titles agree upon is the position of the drawing.
+        """
         figures = self._figures(np.arange(len(self.ink.a)))
         offers = [(-(fit.ink - fit.extra) / (1 + 0.005 * figure.away(title.at)), n, f, name, some)
                   for n, title in enumerate(self.titles) for f, strokes in enumerate(figures)
                   if (figure := self._figure(strokes, title.kind)).ink >= MIN_FIGURE_MM
                   for name, ks in self.record.choices(title, self.usual) for some, fit in self._as_it_should_be(figure, name, ks)]
-        out: list[tuple[int, str, tuple[int, ...], Numbers]] = []
+        agreed = Counter(k for k, _ in {(ks[0], n) for _, n, _, _, ks in offers if len(ks) == 1})
+        if self.usual is None and agreed and (most := agreed.most_common(1)[0])[1] > 1:
+            self.usual = most[0]
+            offers = [o for o in offers if len(o[-1]) > 1 or o[-1][0] == self.usual]
+        out: list[tuple[int, str, tuple[int, ...], Numbers, Fit]] = []
         free = np.ones(len(self.ink.a), bool)
         for _, n, f, name, ks in sorted(offers, key=lambda x: x[:3]):
             mine = figures[f][free[figures[f]]]
@@ -205,31 +248,38 @@ class _Judge:
                 for some, fit in self._as_it_should_be(self._figure(mine, name), name, ks)[:1]:
                     claimed = mine[fit.left <= LEFT_SHARE]
                     free[claimed] = False
-                    out.append((n, name, some, claimed))
+                    out.append((n, name, some, claimed, fit))
         return out
 
     def _as_it_should_be(self, figure: Figure, name: str, ks: tuple[int, ...]) -> list[tuple[tuple[int, ...], Fit]]:
         """A plan laid where most of it is drawn, if nearly all is; of all positions those that are drawn."""
         lines = self.record.view(name).lines(ks)
-        fit = figure.laid(lines, self.ink.turn, whole=True)
+        fit = figure.laid(lines, self.turn, whole=True)
         if fit is None or fit.bare > WHOLE * fit.own:
             some = self._drawn_positions(figure, name, ks) if len(ks) > 1 else ()
             return self._as_it_should_be(figure, name, some) if 1 < len(some) < len(ks) else []
         d = (lines.heads - lines.tails)[[kind == MAIN for kind in lines.kinds]]
         flat = len(d) > 0 and bool((np.abs((d / d[np.abs(d).argmax()]).imag) < 0.02).all())
-        # Any line fits a plan along one line: it is one only with a head.
-        tips = np.array([tip for tip, _ in self.ink.heads], dtype=complex)
-        sure = (np.abs(figure.ends[:, None] - tips) < 2 * TOLERANCE_MM).any() if flat else (fit.left <= LEFT_SHARE).sum() > 1
+        # Any line fits a plan along one line: it is one only with heads where they should be.
+        sure = reversed_heads(self.ink, lines, fit) == [] if flat else (fit.left <= LEFT_SHARE).sum() > 1
         return [(ks, fit)] if fit.own > MIN_FIGURE_MM and sure else []
 
     def _drawn_positions(self, figure: Figure, name: str, ks: tuple[int, ...]) -> tuple[int, ...]:
-        """Of many positions those that are there by themselves, most of them at one place."""
+        """Of many positions those that are there by themselves, most of them at one place, each with ink of its own."""
         view = self.record.view(name)
-        fits = [(k, fit) for k in ks if (fit := figure.laid(view.lines((k,)), self.ink.turn, 3, whole=True)) is not None
+        fits = [(k, fit) for k in ks if (fit := figure.laid(view.lines((k,)), self.turn, 3, whole=True)) is not None
                 and fit.bare <= WHOLE * fit.own]
-        alike = [tuple(k for k, other in fits if abs(other.scale / fit.scale - 1) < 0.01
-                       and abs(other.origin - fit.origin) < 4 * TOLERANCE_MM) for _, fit in fits]
-        return max(alike, key=len, default=())
+        fits.sort(key=lambda x: x[1].extra)
+        best: tuple[int, ...] = ()
+        for _, fit in fits:
+            some, open_strokes = [], np.ones(len(figure.strokes), bool)
+            for k, other in fits:
+                if abs(other.scale / fit.scale - 1) < 0.01 and abs(other.origin - fit.origin) < 4 * TOLERANCE_MM and (
+                        open_strokes & (mine := other.left <= LEFT_SHARE)).any():
+                    some.append(k)
+                    open_strokes &= ~mine
+            best = max(best, tuple(sorted(some)), key=len)
+        return best
 
     def _with_mistakes(self, open_titles: Sequence[int], rest: Sequence[Figure]) -> tuple[list[JudgedView], set[int]]:
         """Titles judged with mistakes on the figures that are left, and the numbers of these."""
@@ -239,7 +289,7 @@ class _Judge:
             near = sorted((f.away(title.at), k) for k, f in enumerate(rest) if f.ink > MIN_FIGURE_MM and len(f.strokes) > 1)
             for far, k in near[:NEAREST]:
                 for name, ks in [*self.record.choices(title, self.usual)][:2]:
-                    v = judge_view(self.record, title.text, name, ks, self._figure(rest[k].strokes, name), self.ink.turn)
+                    v = self._judged(title.text, name, ks, rest[k].strokes)
                     if v.fit is not None:
                         known = v.kind in ("right", "mistake")
                         offers.append((not known, v.fit.price / max(v.fit.ink, 1.0) * known + far / FAR_MM, n, k, v))
@@ -262,12 +312,12 @@ class _Judge:
     def _untitled(self, figure: Figure) -> JudgedView | None:
         """A figure without a title as the plan that fits it best as it is."""
         fits = [(fit.price, name, ks) for name, ks in self.record.everything()
-                if (fit := self._figure(figure.strokes, name).laid(self.record.view(name).lines(ks), self.ink.turn, 3)) is not None
+                if (fit := self._figure(figure.strokes, name).laid(self.record.view(name).lines(ks), self.turn, 3)) is not None
                 and fit.extra < 0.25 * fit.ink]
         if not fits:
             return None
         _, name, ks = min(fits, key=itemgetter(0))
-        return judge_view(self.record, "", name, ks, self._figure(figure.strokes, name), self.ink.turn)
+        return self._judged("", name, ks, figure.strokes)
 
 
 def judge_view(record: PlanRecord, title: str, name: str, ks: tuple[int, ...], figure: Figure, turn: float,
@@ -279,15 +329,19 @@ def judge_view(record: PlanRecord, title: str, name: str, ks: tuple[int, ...], f
     view = record.view(name)
     exact = view.lines(ks)
     usual = figure.laid(exact, turn, 12)
-    if usual is not None and figure.against(usual) < LEFT_MM + LEFT_OF_RIGHT * usual.ink and usual.bare < 0.4 * usual.ink:
+    if usual is not None and figure.against(usual) < LEFT_MM + LEFT_OF_RIGHT * usual.ink and _is_there(usual):
         return _view(title, name, ks, view, "right", exact, exact, usual, figure)
     search = _MistakeSearch(record, view, name, ks, exact, figure, turn, possible, before)
     found = search.best(usual)
     if found is not None:
-        return _view(title, name, ks, view, "mistake", exact, found.lines, found.fit, figure, search.alike(found),
-                     len(found.causes) > 1)
+        return search.view_of(title, found)
     unlike = usual is None or usual.extra > UNLIKE * usual.ink
     return _view(title, name, ks, view, "unlike" if unlike else "partly", exact, exact, usual, figure)
+
+
+def _is_there(fit: Fit) -> bool:
+    """True unless most of a plan would be on bare paper."""
+    return fit.bare < 0.4 * fit.ink
 
 
 def _view(title: str, name: str, ks: tuple[int, ...], view: PlanView, kind: Kind, exact: PlanLines, lines: PlanLines,
@@ -302,14 +356,16 @@ class _Found:
     causes: tuple[Cause, ...]
     fit: Fit
     lines: PlanLines
+    value: Callable[[Step], Any]
 
 
 class _MistakeSearch:
     """The mistakes that may have been made in a view, drawn again and laid on its ink."""
 
     def __init__(self, record: PlanRecord, view: PlanView, name: str, ks: tuple[int, ...], exact: PlanLines, figure: Figure,
-                 turn: float, possible: Callable[[Sequence[Cause]], bool], known: tuple[Cause, ...]) -> None:
-        self.record, self.view, self.name, self.ks, self.possible = record, view, name, ks, possible
+                 turn: float, possible: Callable[[Sequence[Cause]], bool] = bool, known: tuple[Cause, ...] = (),
+                 wrong: tuple[int, ...] = ()) -> None:
+        self.record, self.view, self.name, self.ks, self.possible, self.wrong = record, view, name, ks, possible, wrong
         self.exact, self.figure, self.turn = exact, figure, turn
         self.errors: Errors = record.errors(view.plan)
         self.before = list(ordered(view.points, lambda s: [x for x in self.errors.arguments(s) if isinstance(x, Step)]))
@@ -321,19 +377,25 @@ class _MistakeSearch:
         """The cheapest mistake, or two, that explain nearly all; None where none does."""
         ink = self.figure.ink
         base = usual.price if usual is not None else float("inf")
-        wrong = self._wrong_positions(usual)
-        self._all = self._cheapest([*([()] if self.known else []), *((cause,) for cause in self._causes(wrong, usual))])
+        wrong = self.wrong or self._wrong_positions(usual)
+        first = self._causes(wrong, usual, replay(self.errors, [c for one in self.known for c in one.changes]))
+        self._all = self._cheapest([*([()] if self.known else []), *((cause,) for cause in first)], usual)
         best = next((f for f in self._all if self.possible(f.causes)), None)
         if best is None:
             return None
         if self.figure.against(best.fit) > LEFT_MM + 0.01 * ink and base - best.price > HALF * min(base, ink):
             # Most is explained, not all: another mistake besides.
-            more = self._cheapest([(*best.causes, cause) for cause in self._causes(wrong, best.fit)])
+            more = self._cheapest([(*best.causes, cause) for cause in self._causes(wrong, best.fit, best.value)], best.fit)
             if more and more[0].price < best.price - GAIN and self.possible(more[0].causes):
                 best = more[0]
         explained = self.figure.against(best.fit) < LEFT_SHARE * ink
         there = explained or (best.fit.bare <= WHOLE * best.fit.own and base - best.price > HALF * base)
-        return best if there and best.price < base - GAIN else None
+        return best if there and _is_there(best.fit) and best.price < base - GAIN else None
+
+    def view_of(self, title: str, found: _Found) -> JudgedView:
+        """The view with such a mistake."""
+        return _view(title, self.name, self.ks, self.view, "mistake", self.exact, found.lines, found.fit, self.figure,
+                     self.alike(found), len(found.causes) > 1)
 
     def alike(self, found: _Found) -> tuple[Cause, ...]:
         """The causes found; of one alone all that draw the same, the cheapest first."""
@@ -353,12 +415,15 @@ class _MistakeSearch:
                 if self.exact.kinds[i] == MAIN}
         return tuple(self.ks[n] for n in sorted(gone))[:3]
 
-    def _cheapest(self, some: Sequence[tuple[Cause, ...]]) -> list[_Found]:
+    def _cheapest(self, some: Sequence[tuple[Cause, ...]], fit_before: Fit | None) -> list[_Found]:
         """Causes that come together, beside those known of plans before, the cheapest first."""
         out = []
+        left = self.figure.part(fit_before.left > LEFT_SHARE) if self.wrong and fit_before is not None else None
         for made in some:
             value = replay(self.errors, [c for one in (*self.known, *made) for c in one.changes])
             try:
+                if left is not None and left.laid(self.view.lines(self.wrong, value), self.turn).extra > HALF * left.ink:
+                    continue
                 lines = self.view.lines(self.ks, value)
             except (ValueError, ZeroDivisionError, TypeError, IndexError):
                 continue  # cannot be drawn so
@@ -366,11 +431,14 @@ class _MistakeSearch:
                 lines.tails, self.exact.tails)
             fit = None if same else self.figure.laid(lines, self.turn, 3)
             if fit is not None:
-                out.append(_Found(fit.price + sum(c.price for c in made), made or self.known[-1:], fit, lines))
+                out.append(_Found(fit.price + sum(c.price for c in made), made or self.known[-1:], fit, lines, value))
         return sorted(out, key=lambda f: f.price)
 
-    def _causes(self, ks: Sequence[int], fit: Fit | None) -> Iterator[Cause]:
-        """What may have been done: the dictionary on every step before the view's points, another position, a point elsewhere."""
+    def _causes(self, ks: Sequence[int], fit: Fit | None, value: Callable[[Step], Any]) -> Iterator[Cause]:
+        """What may have been done: the dictionary on every step before the view's points, another position, a point elsewhere.
+
+        ``value`` gives what steps come to with what is known to have been done.
+        """
         seen = set()
         for k in ks:
             for h in hypotheses(self.before, k, self.view.plan.labels, list(self.view.plan)):
@@ -383,29 +451,34 @@ class _MistakeSearch:
                 for h in of_other_positions(self.view.points, k, self.view.plan.labels):
                     yield Cause(h.remark, h.step, h.changes, PRICES["other position"], h)
             if fit is not None:
-                yield from self._moved(k, fit)
+                yield from self._moved(k, fit, value)
 
-    def _moved(self, k: int, fit: Fit) -> Iterator[Cause]:
+    def _moved(self, k: int, fit: Fit, value: Callable[[Step], Any]) -> Iterator[Cause]:
         """A point at an end of ink: along its line, so that a length is wrong, or anywhere."""
         for p in self.view.points:
-            if not any(isinstance(x, Step) for x in p.args) or not np.isfinite(was := complex(value_at(p, k))):
+            if not any(isinstance(x, Step) for x in p.args) or not np.isfinite(was := complex(value_at(value(p), k))):
                 continue
-            here = fit.origin + fit.scale * was
-            ends = np.unique(np.round(self.figure.ends[np.abs(self.figure.ends - here) < MAX_MOVED_MM], 1))
-            for end in ends[np.argsort(np.abs(ends - here))][:ENDS].tolist():
-                if abs(end - here) < MIN_MOVED_MM:
-                    continue
-                by = (end - here) / fit.scale
-                yield from self._longer(p, was, by, k, fit)
-                remark = POINT_MOVED(point=letter_of(p), distance=millimetres(abs(end - here)))
+            base = complex(value_at(value(p.args[0]), k)) if isinstance(p.args[0], Step) else None
+            for by in self._offsets(was, base if p.rule is rules.SHIFT else None, fit):
+                if p.rule in (rules.LAY_OFF, rules.ALONG) and base is not None:
+                    yield from self._longer(p, was - base, by, k, fit)
+                remark = POINT_MOVED(point=letter_of(p), distance=millimetres(abs(by * fit.scale)))
                 yield Cause(remark, p, (Change(p, displaced(by), k),), PRICES["point moved"])
 
-    def _longer(self, p: Step, was: complex, by: complex, k: int, fit: Fit) -> Iterator[Cause]:
+    def _offsets(self, was: complex, base: complex | None, fit: Fit) -> Iterator[complex]:
+        """From a point to ends of ink; and, where all after a vector goes with it, from such ends to its base."""
+        free = np.tile(fit.left > LEFT_SHARE, 2) if self.wrong else True
+        for at, sign in ((was, 1), (base, -1)):
+            if at is not None:
+                here = fit.origin + fit.scale * at
+                far = np.abs(self.figure.ends - here)
+                ends = np.unique(np.round(self.figure.ends[free & (far > MIN_MOVED_MM) & (far < MAX_MOVED_MM)], 1))
+                yield from (sign * (ends[np.argsort(np.abs(ends - here))][:ENDS] - here) / fit.scale).tolist()
+
+    def _longer(self, p: Step, line: complex, by: complex, k: int, fit: Fit) -> Iterator[Cause]:
         """A length laid off too long or too short, where the point stays on its line."""
-        if p.rule in (rules.LAY_OFF, rules.ALONG) and isinstance(p.args[0], Step):
-            base = complex(value_at(p.args[0], k))
-            if abs(np.angle((was + by - base) / (was - base))) < 0.03:
-                times = abs(was + by - base) / abs(was - base)
-                off = (times - 1) * abs(was - base) * abs(fit.scale)
-                remark = LINE_TOO_LONG[1 if off > 0 else -1](line=letter_of(p.args[0]) + letter_of(p), by=millimetres(off))
-                yield Cause(remark, p, (Change(p, laid_off(times), k),), PRICES["length"])
+        if abs(np.angle((line + by) / line)) < 0.03:
+            times = abs(line + by) / abs(line)
+            off = (times - 1) * abs(line) * abs(fit.scale)
+            remark = LINE_TOO_LONG[1 if off > 0 else -1](line=letter_of(p.args[0]) + letter_of(p), by=millimetres(off))
+            yield Cause(remark, p, (Change(p, laid_off(times), k),), PRICES["length"])
