@@ -365,10 +365,8 @@ class Figure:
         return cls(strokes, a, b, soft | _without_heads(ink, a, b, strokes) if vectors else soft)
 
     def part(self, some: NDArray[np.bool_]) -> Figure:
-        """Some of its strokes, at the place that is known."""
-        part = Figure(self.strokes[some], self.a[some], self.b[some], self.soft[some])
-        part.place = self.place
-        return part
+        """Some of its strokes."""
+        return Figure(self.strokes[some], self.a[some], self.b[some], self.soft[some])
 
     def against(self, fit: Fit) -> float:
         """What speaks against a plan at a place, mm: ink that it does not explain; what is not drawn may be left out."""

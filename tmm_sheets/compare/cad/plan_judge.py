@@ -132,16 +132,6 @@ class JudgedPlans:
         return [v for v in self.views if v.kind in ("right", "mistake", "partly")]
 
     @property
-    def right(self) -> int:
-        """How many views are right."""
-        return sum(v.kind == "right" for v in self.views)
-
-    @property
-    def named(self) -> int:
-        """How many are right or have a mistake that is named; those that are right count twice."""
-        return self.right + sum(v.kind in ("right", "mistake") for v in self.views)
-
-    @property
     def explained(self) -> float:
         """Share of the straight ink that belongs to such views."""
         size = np.minimum(np.abs(self.ink.b - self.ink.a), COUNTED_MM)
@@ -150,17 +140,20 @@ class JudgedPlans:
 
 
 def judge_plans(record: PlanRecord, ink: PlanInk) -> JudgedPlans:
-    """Judge the plans of a drawing; where few are right, also as seen from behind, where none is, turned against its lettering."""
-    found = JudgedPlans(ink, *_Judge(record, ink).judged())
-    if 2 * found.right > len(found.views) or not len(ink.a):
+    """Judge the plans of a drawing, as it is or, if more of them are wholly there so, seen from behind or turned."""
+    judge, mirrored, askew = _Judge(record, ink), False, False
+    if len(ink.a) and 2 * len(judge.whole) <= len(judge.titles):
+        for turn, behind in ((-ink.turn, True), (np.pi - ink.turn, True), (np.nan, False)):
+            if behind or not judge.whole:
+                other = _Judge(record, ink.otherwise(turn, behind))
+                if len(other.whole) > len(judge.whole):
+                    judge, mirrored, askew = other, behind, not behind
+    found = JudgedPlans(judge.ink, *judge.judged(), mirrored, askew)
+    if judge.titles or any(v.kind == "right" for v in found.views) or not len(ink.a):
         return found
-    others = [JudgedPlans(other, *_Judge(record, other).judged(), mirrored=True)
-              for turn in (-ink.turn, np.pi - ink.turn) for other in [ink.otherwise(turn, mirrored=True)]]
-    if not any(o.right for o in (found, *others)):
-        other = ink.otherwise(np.nan)
-        others.append(JudgedPlans(other, *_Judge(record, other).judged(), askew=True))
-    best = max(others, key=lambda o: o.named)
-    return best if best.right > found.right and best.named > found.named else found
+    judge = _Judge(record, ink.otherwise(np.nan, mirrored=True))  # without a title any plan may be seen from behind
+    other_side = JudgedPlans(judge.ink, *judge.judged(), mirrored=True)
+    return other_side if any(v.kind == "right" for v in other_side.views) else found
 
 
 class _Judge:
@@ -172,16 +165,17 @@ class _Judge:
         labels = Counter(t.label for t in self.titles if t.label in record.labels)
         self.usual = record.labels.index(labels.most_common(1)[0][0]) if labels else None
         self.turn = ink.turn
+        self.whole = self._whole_plans()
+        if self.whole and not np.isfinite(self.turn):  # a drawing has one turn: that of the largest plan that is there
+            self.turn = float(np.angle(max((w[-1] for w in self.whole), key=lambda fit: fit.own).scale))
+            self.whole = self._whole_plans()
+        alone = Counter(ks[0] for _, _, ks, *_ in self.whole if len(ks) == 1)
+        if self.usual is None and alone:
+            self.usual = alone.most_common(1)[0][0]
 
     def judged(self) -> tuple[tuple[JudgedView, ...], tuple[Numbers, ...]]:
         """All views, and the figures that are none."""
-        whole = self._whole_plans()
-        if whole and not np.isfinite(self.turn):  # a drawing has one turn: that of the largest plan that is there
-            self.turn = float(np.angle(max((w[-1] for w in whole), key=lambda fit: fit.own).scale))
-            whole = self._whole_plans()
-        alone = Counter(ks[0] for _, _, ks, *_ in whole if len(ks) == 1)
-        if self.usual is None and alone:  # nor are plans of many positions drawn
-            self.usual = alone.most_common(1)[0][0]
+        whole = self.whole
         free = np.setdiff1d(np.arange(len(self.ink.a)), [n for *_, claimed, _ in whole for n in claimed.tolist()])
         rest = [f for some in self._figures(free) if (f := Figure.of_drawing(self.ink, some)).ink > MIN_REST_MM
                 and not self.ink.is_frame(some)]
@@ -212,12 +206,10 @@ class _Judge:
             return v
         figure = self._figure(v.strokes, v.name)
         figure.place = v.fit.scale, v.fit.origin
-        found: list[tuple[float, JudgedView]] = []
-        for k in range(len(self.record.labels)):
-            ks = tuple(dict.fromkeys((*v.positions, k)))
-            search = _MistakeSearch(self.record, v.view, v.name, ks, v.view.lines(ks), figure, self.turn, wrong=(k,))
-            if (best := search.best(v.fit)) is not None:
-                found.append((best.price, search.view_of(v.title, best)))
+        some = [tuple(dict.fromkeys((*v.positions, k))) for k in range(len(self.record.labels))]
+        searches = [_MistakeSearch(self.record, v.view, v.name, ks, v.view.lines(ks), figure, self.turn, wrong=(k,))
+                    for k, ks in enumerate(some)]
+        found = [(best.price, search.view_of(v.title, best)) for search in searches if (best := search.best(v.fit)) is not None]
         return min(found, key=itemgetter(0), default=(0.0, v))[1]
 
     def _figures(self, some: Numbers) -> list[Numbers]:
@@ -415,14 +407,15 @@ class _MistakeSearch:
                 if self.exact.kinds[i] == MAIN}
         return tuple(self.ks[n] for n in sorted(gone))[:3]
 
-    def _cheapest(self, some: Sequence[tuple[Cause, ...]], fit_before: Fit | None) -> list[_Found]:
+    def _cheapest(self, some: Sequence[tuple[Cause, ...]], before: Fit | None) -> list[_Found]:
         """Causes that come together, beside those known of plans before, the cheapest first."""
         out = []
-        left = self.figure.part(fit_before.left > LEFT_SHARE) if self.wrong and fit_before is not None else None
+        left = self.figure.part(before.left > LEFT_SHARE) if self.wrong and before is not None else None
         for made in some:
             value = replay(self.errors, [c for one in (*self.known, *made) for c in one.changes])
             try:
-                if left is not None and left.laid(self.view.lines(self.wrong, value), self.turn).extra > HALF * left.ink:
+                if left is not None and before is not None and HALF * left.ink < left.price(
+                        self.view.lines(self.wrong, value), before.scale, before.origin).extra:
                     continue
                 lines = self.view.lines(self.ks, value)
             except (ValueError, ZeroDivisionError, TypeError, IndexError):
