@@ -219,19 +219,12 @@ class _Judge:
         return Figure.of_drawing(self.ink, strokes, vectors=name != "positions")
 
     def _whole_plans(self) -> list[tuple[int, str, tuple[int, ...], Numbers, Fit]]:
-        """Plans that are there as they should be: number of the title, plan, positions, its strokes, where it lies.
-
-        What several titles agree upon is the position of the drawing.
-        """
+        """Plans that are there as they should be: number of the title, plan, positions, its strokes, where it lies."""
         figures = self._figures(np.arange(len(self.ink.a)))
         offers = [(-(fit.ink - fit.extra) / (1 + 0.005 * figure.away(title.at)), n, f, name, some)
                   for n, title in enumerate(self.titles) for f, strokes in enumerate(figures)
                   if (figure := self._figure(strokes, title.kind)).ink >= MIN_FIGURE_MM
                   for name, ks in self.record.choices(title, self.usual) for some, fit in self._as_it_should_be(figure, name, ks)]
-        agreed = Counter(k for k, _ in {(ks[0], n) for _, n, _, _, ks in offers if len(ks) == 1})
-        if self.usual is None and agreed and (most := agreed.most_common(1)[0])[1] > 1:
-            self.usual = most[0]
-            offers = [o for o in offers if len(o[-1]) > 1 or o[-1][0] == self.usual]
         out: list[tuple[int, str, tuple[int, ...], Numbers, Fit]] = []
         free = np.ones(len(self.ink.a), bool)
         for _, n, f, name, ks in sorted(offers, key=lambda x: x[:3]):
@@ -270,7 +263,9 @@ class _Judge:
                         open_strokes & (mine := other.left <= LEFT_SHARE)).any():
                     some.append(k)
                     open_strokes &= ~mine
-            best = max(best, tuple(sorted(some)), key=len)
+            alike = tuple(k for k, other in fits if abs(other.scale / fit.scale - 1) < 0.01
+                          and abs(other.origin - fit.origin) < 4 * TOLERANCE_MM)
+            best = max(best, tuple(sorted(alike)) if len(some) > 1 else (), key=len)
         return best
 
     def _with_mistakes(self, open_titles: Sequence[int], rest: Sequence[Figure]) -> tuple[list[JudgedView], set[int]]:
