@@ -79,7 +79,7 @@ WHOLES = {"plotter": 'language = "hpgl"\nreach = [0, 0, 840, 594]\nspeed = 10\n[
 
 
 NUMBERS = {"320 digits": "9" * 320, "5000 digits": "9" * 5000, "hexadecimal": "0x" + "f" * 400} | {
-    n: n for n in ("nan", "-inf", "1e400", '"1"', "true", "[[]]", "1979-05-27")}
+    n: n for n in ("nan", "-inf", "1e400", '"one"', "true", "[[]]", "1979-05-27")}
 
 
 @pytest.mark.parametrize("number", NUMBERS)

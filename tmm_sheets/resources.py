@@ -14,7 +14,13 @@ PACKAGE = os.path.dirname(os.path.realpath(__file__))
 
 @cache
 def folder(name: str) -> str:
-    """The folder of some data."""
+    """The folder of some data.
+
+    Raises
+    ------
+    FileNotFoundError
+        when it is missing.
+    """
     for found in (os.path.join(PACKAGE, f"_{name}"), os.path.join(os.path.dirname(PACKAGE), name)):
         if os.path.isdir(found):
             return found

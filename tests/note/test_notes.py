@@ -12,6 +12,7 @@ from tmm_sheets import words
 from tmm_sheets.construction.formula import Figures, FormulaRow, Letters, Sign, Words, letters
 from tmm_sheets.note import phrases
 from tmm_sheets.note.document import Explained, Formula, Heading, NumberedTable, NumberInText, Paragraph, Symbol, Where
+from tmm_sheets.task.schema import Seldom, Table
 from tmm_sheets.task.variant import Variant
 
 READ = [(name, "ru") for name in check_notes.SHARE] + [("lugansk/engine", "uk"), ("transport/crusher@12-СДМ-1908", "en")]
@@ -141,7 +142,7 @@ def fields(model, before=""):
     for name, field in model.model_fields.items():
         key = f"{before}{field.alias or name}"
         types = list(_types(field.annotation))
-        tables = [t for t in types if hasattr(t, "model_fields")]
+        tables = [t.table() if issubclass(t, Seldom) else t for t in types if isinstance(t, type) and issubclass(t, Table | Seldom)]
         yield from fields(tables[0], f"{key}.") if tables else [(key, types)]
 
 

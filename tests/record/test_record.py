@@ -250,7 +250,7 @@ def test_searches_are_counted(numbers):
         patch.setattr(Step, "_computed", counted)
         patch.setattr(function.Replay, "__call__", again)
         for n in numbers:
-            composing.ask_again(project, n)
+            composing.ask_again(project, n, ())
         drawn = sum(step.evaluated for of in project.plans.values() for plan in (of or {}).values()
                     for step in (*plan, *plan.auxiliaries.values(), *plan.conditions.values()))
     searched = sum(search.steps for search in project.searches)
