@@ -6,8 +6,7 @@ import gc
 import os
 import signal
 import sys
-from types import ModuleType, SimpleNamespace
-from typing import NoReturn, cast
+from typing import NoReturn
 
 from tmm_sheets import terminal
 
@@ -22,8 +21,7 @@ def main() -> NoReturn:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", "400000000")  # of formats whose size nobody else can tell beforehand
-    # Or pydantic loads a reader of e-mail to look for plugins in every package that is installed: a tenth of the start.
-    sys.modules.setdefault("pydantic.plugin._loader", cast(ModuleType, SimpleNamespace(get_plugins=tuple)))
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # or it looks for some in every package that is installed
     terminal.settle()
     for name in ("SIGTERM", "SIGHUP"):  # what is half-written is cleaned up, as after Ctrl-C; nohup stays nohup
         number = getattr(signal, name, None)
