@@ -89,13 +89,14 @@ def _placed(canvas: Canvas, views: Iterator[tuple[ViewPlace, Any, Any]], inside:
             box = place_nearest(taken, wanted, inside, spot, [_ink_box(canvas, k, inside) for k in (own, *others)])
         else:
             at = view.options.get("left")
-            # Nothing parts a loaded scheme from its force plans, and kinematics stand among the forces only where there is no other
-            # room. Beside a plan that is all but one line there is much of it from the title to the equation: no plan but a table
-            # may stand there.
+            # Nothing parts a loaded scheme from its force plans: kinematics stand among the forces, and equations of forces
+            # elsewhere, only where there is no other room. Beside a plan that is all but one line there is much of it from the
+            # title to the equation: no plan but a table may stand there.
             stands = view.kind.stands
             room = taken | (drawn if stands == "table" else whole)
             first = (room | ~empty_cells(canvas, inside, closed, sides) for sides in LARGE) \
-                if stands in ("anywhere", "table") else iter([room | forces] if view.needs == "positions" else [])
+                if stands in ("anywhere", "table") else \
+                iter([room | forces] if view.needs == "positions" else [room | ~forces] if stands == "forces" else [])
             box = next((box for part in chain(first, [room])
                         if (box := place_farthest(part, wanted, inside, at)) is not None), None)
         yield view, box

@@ -48,7 +48,7 @@ class ViewKind:
         ``(project, canvas, options)`` to the spot that an offered view belongs to: it stands near that, or nowhere.
     stands
         where an offered view is looked a place for: with what is of its part; "anywhere" where most is empty; as a "table" that
-        belongs to no plan.
+        belongs to no plan; among the "forces".
     picture
         what others have to respect of it: a scheme with its "force plans" in a column, "forces" in one picture, "wheels" from edge
         to edge.
@@ -72,7 +72,7 @@ class ViewKind:
     every: str = ""
     sizes: str = ""
     near: str = ""
-    stands: Literal["", "anywhere", "table"] = ""
+    stands: Literal["", "anywhere", "table", "forces"] = ""
     picture: Literal["", "force plans", "forces", "wheels"] = ""
     after: str = ""
     read: str = ""
@@ -142,7 +142,7 @@ VIEWS = {view.draw: view for view in (
              every="kinetics.groups"),
     ViewKind("kinetics.groups", "forces", parts="kinetics.each_group", picture="force plans"),
     ViewKind("kinetics.lever", "forces", place="kinetics.lever_place", picture="forces", read="composition.lever"),
-    ViewKind("kinetics.moments", "forces", by="moments.owed", sizes="moments.owed.sizes"),
+    ViewKind("kinetics.moments", "forces", by="moments.owed", sizes="moments.owed.sizes", stands="forces"),
     ViewKind("kinetics.results", "forces", place="kinetics.results_place", name=marked("Results of the force analysis")),
     ViewKind("position_tables.reactions", "forces", sizes="position_tables.reactions.sizes",
              name=marked("Table of reactions at all positions")),
