@@ -34,15 +34,18 @@ class StepIndex:
         self._ids: dict[int, str] = {}
         self._plan_of: dict[int, str] = {}
         self._keys: dict[tuple[int, int], str] = {}
-        for plan in plans:
+        # Plans and numbers that are made when somebody asks stand in the order of their names: who asks first depends on what is
+        # kept.
+        for plan in sorted(plans, key=lambda plan: plan.name if "@" in plan.name else ""):
             self.plans[_free(plan.name, self.plans)] = plan
+        beside = {name: [step for _, step in sorted(plan.auxiliaries.items())] for name, plan in self.plans.items()}
         for name, plan in self.plans.items():
             self.of[name] = []
-            for step in (*plan.auxiliaries.values(), *plan):
+            for step in (*beside[name], *plan):
                 self._plan_of.setdefault(id(step), name)
         seen: set[int] = set()
         for name, plan in self.plans.items():
-            for step in with_ancestors((*plan, *plan.auxiliaries.values()), seen):
+            for step in with_ancestors((*plan, *beside[name]), seen):
                 own = self._plan_of.setdefault(id(step), name)
                 found = self._ids[id(step)] = _free(f"{own}/{step.name}", self.steps)
                 self.steps[found] = step
