@@ -98,7 +98,7 @@ def of_title_blocks() -> Iterator[tuple[str, str, str]]:
         for cell in block["cells"] if form != "about" else ():
             if cell[2]:
                 yield path.relative_to(ROOT).as_posix(), cell[2], "title block"
-    yield "tmm_sheets/drawing/title_block.py", "Head", "title block"
+    yield "tmm_sheets/drawing/paper.py", "Head", "title block"
 
 
 def of_languages() -> Iterator[tuple[str, str, None]]:
