@@ -465,7 +465,7 @@ class _MistakeSearch:
 
     def _longer(self, p: Step, line: complex, by: complex, k: int, fit: Fit) -> Iterator[Cause]:
         """A length laid off too long or too short, where the point stays on its line."""
-        if abs(np.angle((line + by) / line)) < 0.03:
+        if line and abs(np.angle((line + by) / line)) < 0.03:
             times = abs(line + by) / abs(line)
             off = (times - 1) * abs(line) * abs(fit.scale)
             remark = LINE_TOO_LONG[1 if off > 0 else -1](line=letter_of(p.args[0]) + letter_of(p), by=millimetres(off))
