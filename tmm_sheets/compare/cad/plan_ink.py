@@ -284,7 +284,9 @@ def _open_heads(s: NDArray[np.complex128]) -> tuple[list[int], list[tuple[comple
     i, j = _close(ends, TOLERANCE_MM)
     beside = grouped(sorted(zip(i.tolist(), j.tolist(), strict=True)), itemgetter(0))
     half = np.abs(np.angle(away[j] / away[i])) / 2
+    goes_on = np.isin(np.arange(len(ends)), i[size[j] > MAX_HEAD_MM])
     alike = (np.maximum(size[i], size[j]) <= MAX_HEAD_MM) & (np.abs(size[j] - size[i]) < 0.02 * size[i] + TOLERANCE_MM)
+    alike &= ~(goes_on[i - len(s)] & goes_on[j - len(s)])  # cranks side by side, on whose other ends couplers hang, are none
     pairs = np.column_stack((i, j))[alike & (half > 0.08) & (half < 0.5) & (of[i] != of[j])]
     for p, q in sorted(pairs.tolist()):
         middle = (away[p] + away[q]) / abs(away[p] + away[q])
@@ -514,11 +516,9 @@ def _without_heads(ink: PlanInk, a: Points, b: Points, strokes: Numbers) -> NDAr
     """Of vectors, the strokes of looks of which none has a head, where another look has some."""
     tips = np.array([tip for tip, _ in ink.heads], dtype=complex)
     looks = ink.look[strokes]
-    if not len(tips):
-        return np.zeros(len(strokes), bool)
-    headed = (np.abs(np.concatenate((a, b))[:, None] - tips).min(1) < 2 * TOLERANCE_MM).reshape(2, -1).any(0)
-    some = set(looks[headed].tolist())
-    return ~np.isin(looks, list(some)) if some else np.zeros(len(strokes), bool)
+    far = np.abs(np.concatenate((a, b))[:, None] - tips)  # a head is of one vector: what else ends by chance near it has none
+    some = looks[far.argmin(0)[far.min(0) < 2 * TOLERANCE_MM] % len(a)]
+    return ~np.isin(looks, some) & bool(len(some))
 
 
 def reversed_heads(ink: PlanInk, lines: PlanLines, fit: Fit) -> list[int] | None:

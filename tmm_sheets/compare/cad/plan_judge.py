@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from operator import itemgetter
-from typing import Any, Literal
+from typing import Any, Literal, TypeGuard
 
 import numpy as np
 
@@ -22,7 +22,6 @@ from tmm_sheets.compare.cad.plan_ink import (
     LEFT_SHARE,
     MAIN,
     MAX_GAP_MM,
-    TOLERANCE_MM,
     Figure,
     Fit,
     Numbers,
@@ -240,7 +239,7 @@ class _Judge:
         """A plan laid where most of it is drawn, if nearly all is; of all positions those that are drawn."""
         lines = self.record.view(name).lines(ks)
         fit = figure.laid(lines, self.turn, whole=True)
-        if fit is None or fit.bare > WHOLE * fit.own:
+        if not _is_whole(fit):
             some = self._drawn_positions(figure, name, ks) if len(ks) > 1 else ()
             return self._as_it_should_be(figure, name, some) if 1 < len(some) < len(ks) else []
         d = (lines.heads - lines.tails)[[kind == MAIN for kind in lines.kinds]]
@@ -250,22 +249,16 @@ class _Judge:
         return [(ks, fit)] if fit.own > MIN_FIGURE_MM and sure else []
 
     def _drawn_positions(self, figure: Figure, name: str, ks: tuple[int, ...]) -> tuple[int, ...]:
-        """Of many positions those that are there by themselves, most of them at one place, each with ink of its own."""
-        view = self.record.view(name)
-        fits = [(k, fit) for k in ks if (fit := figure.laid(view.lines((k,)), self.turn, 3, whole=True)) is not None
-                and fit.bare <= WHOLE * fit.own]
-        fits.sort(key=lambda x: x[1].extra)
+        """Of many positions all that are there at one place, where no one of them has all their ink."""
+        lines = {k: self.record.view(name).lines((k,)) for k in ks}
         best: tuple[int, ...] = ()
-        for _, fit in fits:
-            some, open_strokes = [], np.ones(len(figure.strokes), bool)
-            for k, other in fits:
-                if abs(other.scale / fit.scale - 1) < 0.01 and abs(other.origin - fit.origin) < 4 * TOLERANCE_MM and (
-                        open_strokes & (mine := other.left <= LEFT_SHARE)).any():
-                    some.append(k)
-                    open_strokes &= ~mine
-            alike = tuple(k for k, other in fits if abs(other.scale / fit.scale - 1) < 0.01
-                          and abs(other.origin - fit.origin) < 4 * TOLERANCE_MM)
-            best = max(best, tuple(sorted(alike)) if len(some) > 1 else (), key=len)
+        for k in ks:
+            laid = None if k in best else figure.laid(lines[k], self.turn, 3, whole=True)
+            if _is_whole(laid):
+                fits = {n: fit for n in ks if _is_whole(fit := figure.price(lines[n], laid.scale, laid.origin))}
+                mine = [fit.left <= LEFT_SHARE for fit in fits.values()]
+                if np.any(mine, axis=0).sum() > max(map(np.sum, mine)):
+                    best = max(best, tuple(fits), key=len)
         return best
 
     def _with_mistakes(self, open_titles: Sequence[int], rest: Sequence[Figure]) -> tuple[list[JudgedView], set[int]]:
@@ -326,6 +319,11 @@ def judge_view(record: PlanRecord, title: str, name: str, ks: tuple[int, ...], f
     return _view(title, name, ks, view, "unlike" if unlike else "partly", exact, exact, usual, figure)
 
 
+def _is_whole(fit: Fit | None) -> TypeGuard[Fit]:
+    """True if a plan is drawn nearly wholly where it lies."""
+    return fit is not None and fit.bare <= WHOLE * fit.own
+
+
 def _is_there(fit: Fit) -> bool:
     """True unless most of a plan would be on bare paper."""
     return fit.bare < 0.4 * fit.ink
@@ -376,7 +374,7 @@ class _MistakeSearch:
             if more and more[0].price < best.price - GAIN and self.possible(more[0].causes):
                 best = more[0]
         explained = self.figure.against(best.fit) < LEFT_SHARE * ink
-        there = explained or (best.fit.bare <= WHOLE * best.fit.own and base - best.price > HALF * base)
+        there = explained or (_is_whole(best.fit) and base - best.price > HALF * base)
         return best if there and _is_there(best.fit) and best.price < base - GAIN else None
 
     def view_of(self, title: str, found: _Found) -> JudgedView:
