@@ -188,3 +188,12 @@ def test_untidy_drawings_are_judged_as_wanted(count):
     assert total["refused"] == 0
     assert total["views false"] == 0
     assert total["as wanted"] >= 0.9 * count
+
+
+@pytest.mark.parametrize(("seed", "number"), [
+    (7301, 16),  # cranks side by side are no heads
+    (7304, 2),   # a construction line ends by chance near a head
+    (7305, 45),  # several positions, of one of which alone the scale comes out 1 % off
+])
+def test_right_views_are_not_accused(seed, number):
+    assert trial(1, seed, number)["views false"] == 0
