@@ -6,7 +6,7 @@ from math import gcd
 
 import numpy as np
 import shapely
-from hypothesis import given, settings, strategies as st
+from hypothesis import example, given, settings, strategies as st
 
 from tmm_sheets.drawing.pen_paths import drop_retraced, fill_passes, join_segments, line_passes, ordered, raised_travel
 
@@ -86,6 +86,7 @@ def test_order_of_a_few_is_near_the_best():
 
 
 @given(st.lists(corner, min_size=3, max_size=5, unique=True), st.sampled_from([0.2, 0.3, 0.5]))
+@example([(22, 28), (21, 26), (27, 40), (16, 15)], 0.2)  # what one stroke leaves of a spot is seen
 @settings(max_examples=20)
 def test_passes_cover_a_thick_bent_line(corners, pen):
     points = np.array(corners) @ [1, 1j]

@@ -88,15 +88,15 @@ def _passes(points: Points, pen: float) -> Iterator[Points]:
 
 
 def _missed(area: Any, passes: Iterable[Points], pen: float) -> Iterator[Points]:
-    """One stroke for each spot of an area that the passes leave white."""
+    """One stroke for each spot of an area that the passes leave white, and one for what twice as wide is left of it then."""
     import shapely
 
-    covered = shapely.union_all([_band(p, pen / 2) for p in passes], grid_size=GRID_MM)
-    for spot in shapely.get_parts(shapely.difference(area, covered, grid_size=GRID_MM).buffer(-WHITE_SPOT_RADIUS_MM)):
-        if spot.is_empty:
-            continue
-        x, y = spot.exterior.xy
-        yield _diagonal(np.asarray(x) + 1j * np.asarray(y), pen)
+    for share in (1, 2):
+        covered = shapely.union_all([_band(p, pen / 2) for p in passes], grid_size=GRID_MM)
+        area = shapely.difference(area, covered, grid_size=GRID_MM)
+        spots = [spot for spot in shapely.get_parts(area.buffer(-share * WHITE_SPOT_RADIUS_MM)) if not spot.is_empty]
+        passes = [_diagonal(np.asarray(x) + 1j * np.asarray(y), pen) for x, y in (spot.exterior.xy for spot in spots)]
+        yield from passes
 
 
 def _band(points: Points, radius: float) -> Any:
