@@ -145,7 +145,7 @@ def judge_plans(record: PlanRecord, ink: PlanInk) -> JudgedPlans:
         for turn, behind in ((-ink.turn, True), (np.pi - ink.turn, True), (np.nan, False)):
             if behind or not judge.whole:
                 other = _Judge(record, ink.otherwise(turn, behind))
-                if len(other.whole) > len(judge.whole):
+                if other.sided > judge.sided:
                     judge, mirrored, askew = other, behind, not behind
     found = JudgedPlans(judge.ink, *judge.judged(), mirrored, askew)
     if judge.titles or any(v.kind == "right" for v in found.views) or not len(ink.a):
@@ -171,6 +171,11 @@ class _Judge:
         alone = Counter(ks[0] for _, _, ks, *_ in self.whole if len(ks) == 1)
         if self.usual is None and alone:
             self.usual = alone.most_common(1)[0][0]
+
+    @property
+    def sided(self) -> int:
+        """How many of the plans that are wholly there lie along more than one line: others look the same from behind."""
+        return sum(not _is_flat(self.record.view(name).lines(ks)) for _, name, ks, *_ in self.whole)
 
     def judged(self) -> tuple[tuple[JudgedView, ...], tuple[Numbers, ...]]:
         """All views, and the figures that are none."""
@@ -242,10 +247,8 @@ class _Judge:
         if not _is_whole(fit):
             some = self._drawn_positions(figure, name, ks) if len(ks) > 1 else ()
             return self._as_it_should_be(figure, name, some) if 1 < len(some) < len(ks) else []
-        d = (lines.heads - lines.tails)[[kind == MAIN for kind in lines.kinds]]
-        flat = len(d) > 0 and bool((np.abs((d / d[np.abs(d).argmax()]).imag) < 0.02).all())
         # Any line fits a plan along one line: it is one only with heads where they should be.
-        sure = reversed_heads(self.ink, lines, fit) == [] if flat else (fit.left <= LEFT_SHARE).sum() > 1
+        sure = reversed_heads(self.ink, lines, fit) == [] if _is_flat(lines) else (fit.left <= LEFT_SHARE).sum() > 1
         return [(ks, fit)] if fit.own > MIN_FIGURE_MM and sure else []
 
     def _drawn_positions(self, figure: Figure, name: str, ks: tuple[int, ...]) -> tuple[int, ...]:
@@ -317,6 +320,12 @@ def judge_view(record: PlanRecord, title: str, name: str, ks: tuple[int, ...], f
         return search.view_of(title, found)
     unlike = usual is None or usual.extra > UNLIKE * usual.ink
     return _view(title, name, ks, view, "unlike" if unlike else "partly", exact, exact, usual, figure)
+
+
+def _is_flat(lines: PlanLines) -> bool:
+    """True if all lines of a plan are along one."""
+    d = (lines.heads - lines.tails)[[kind == MAIN for kind in lines.kinds]]
+    return len(d) > 0 and bool((np.abs((d / d[np.abs(d).argmax()]).imag) < 0.02).all())
 
 
 def _is_whole(fit: Fit | None) -> TypeGuard[Fit]:
