@@ -16,7 +16,7 @@ from tmm_sheets.catalogue import read
 from tmm_sheets.compare.cad import cad_drawing, cad_file
 from tmm_sheets.compare.cad.cad_ink import Writing
 from tmm_sheets.compare.cad.line_fit import MOST
-from tmm_sheets.compare.cad.plan_ink import PlanInk
+from tmm_sheets.compare.cad.plan_ink import Figure, PlanInk
 from tmm_sheets.compare.cad.plan_views import PlanRecord, titles
 from tmm_sheets.compare.report_pages import page
 from tmm_sheets.errors import CannotBuild
@@ -198,3 +198,10 @@ def test_untidy_drawings_are_judged_as_wanted(count):
 ])
 def test_right_views_are_not_accused(seed, number):
     assert trial(1, seed, number)["views false"] == 0
+
+
+def test_a_figure_of_no_strokes_has_none():
+    """As where other plans have taken them all; the drawing has heads."""
+    ink = PlanInk(cad_file.read(CASES / "own_layout_right.dxf").spaces[0], 1.0)
+    assert len(ink.heads)
+    assert Figure.of_drawing(ink, np.zeros(0, int), vectors=True).ink == 0

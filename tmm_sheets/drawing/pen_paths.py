@@ -225,7 +225,7 @@ def _pen_lines(drawing: Drawing, plotter: Plotter, view: Box, shift: complex) ->
         pen = plotter.finest if stroke.filled else plotter.pen(stroke.width)
         for way in fill_passes(points, pen.width) if stroke.filled else line_passes(points, stroke.width, pen.width):
             parts = polyline_inside(reach, way)
-            lost += 0.0 if [*map(id, parts)] == [id(way)] else _length(way) - sum(map(_length, parts))
+            lost += 0.0 if parts and parts[0] is way else _length(way) - sum(map(_length, parts))
             lines[pen] += [_steps(part) for part in parts]
     return lines, areas, strokes, lost
 

@@ -514,6 +514,8 @@ class Figure:
 
 def _without_heads(ink: PlanInk, a: Points, b: Points, strokes: Numbers) -> NDArray[np.bool_]:
     """Of vectors, the strokes of looks of which none has a head, where another look has some."""
+    if not len(strokes):
+        return np.zeros(0, bool)
     tips = np.array([tip for tip, _ in ink.heads], dtype=complex)
     looks = ink.look[strokes]
     far = np.abs(np.concatenate((a, b))[:, None] - tips)  # a head is of one vector: what else ends by chance near it has none
