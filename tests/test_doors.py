@@ -6,6 +6,7 @@ import subprocess
 import sys
 from contextlib import suppress
 from pathlib import Path
+from shlex import quote
 
 import pytest
 
@@ -118,8 +119,8 @@ def test_control_letters_are_seen():
 ])
 @pytest.mark.skipif(os.name == "nt", reason="no such shell")
 def test_streams_that_are_closed_or_full(command, status, said):
-    done = subprocess.run(["bash", "-c", f"{sys.executable} -m tmm_sheets {command}"], capture_output=True, text=True, check=False,
-                          env={**os.environ, "LANGUAGE": "en"})
+    done = subprocess.run(["bash", "-c", f"{quote(sys.executable)} -m tmm_sheets {command}"], capture_output=True, text=True,
+                          check=False, env={**os.environ, "LANGUAGE": "en"})
     assert done.returncode == status
     assert said in done.stderr
     assert "Traceback" not in done.stderr
